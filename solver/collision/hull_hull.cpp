@@ -1,0 +1,218 @@
+#include "solver/collision/hull.hpp"
+
+namespace cycloid::solver {
+
+/// An edge of one hull as the reference of a manifold.
+struct Axis {
+  std::uint32_t edge = 0;
+  float separation = -3.0e38f;  ///< Of the cores, along the edge's normal, m.
+};
+
+/// The edge of `a` that `b` is farthest outside of. For a segment only its free side counts.
+static Axis deepest_axis(const Hull& a, const Hull& b) {
+  Axis best;
+  const std::uint32_t edges = a.one_sided ? 1 : a.count;
+  for (std::uint32_t i = 0; i < edges; ++i) {
+    float lowest = dot(a.normals[i], b.vertices[0] - a.vertices[i]);
+    for (std::uint32_t j = 1; j < b.count; ++j) {
+      const float height = dot(a.normals[i], b.vertices[j] - a.vertices[i]);
+      if (height < lowest) lowest = height;
+    }
+    if (lowest > best.separation) best = {i, lowest};
+  }
+  return best;
+}
+
+/// The edge of `hull` whose normal is most opposed to `normal`.
+static std::uint32_t incident_edge(const Hull& hull, const Vec<2>& normal) {
+  std::uint32_t best = 0;
+  float lowest = dot(hull.normals[0], normal);
+  for (std::uint32_t i = 1; i < hull.count; ++i) {
+    const float along = dot(hull.normals[i], normal);
+    if (along < lowest) {
+      lowest = along;
+      best = i;
+    }
+  }
+  return best;
+}
+
+struct Edge {
+  std::uint32_t from;
+  std::uint32_t to;
+};
+static Edge edge_of(const Hull& hull, std::uint32_t i) {
+  return {i, i + 1 < hull.count ? i + 1 : 0};
+}
+
+/// Closest points of two edges that do not cross, as fractions along them.
+/// Source: Ericson, "Real-Time Collision Detection" (2005), 5.1.9.
+static void closest_fractions(const Vec<2>& p, const Vec<2>& d1, const Vec<2>& q, const Vec<2>& d2,
+                              float& s, float& t) {
+  const Vec<2> r = p - q;
+  const float a = dot(d1, d1);
+  const float e = dot(d2, d2);
+  const float b = dot(d1, d2);
+  const float c = dot(d1, r);
+  const float f = dot(d2, r);
+  const float denominator = a * e - b * b;
+  s = denominator > 1.0e-6f * a * e ? clamp((b * f - c * e) / denominator, 0.0f, 1.0f) : 0.0f;
+  t = (b * s + f) / e;
+  if (t < 0.0f) {
+    t = 0.0f;
+    s = clamp(-c / a, 0.0f, 1.0f);
+  } else if (t > 1.0f) {
+    t = 1.0f;
+    s = clamp((b - c) / a, 0.0f, 1.0f);
+  }
+}
+
+/// What the two reference choices share: the reference hull, its edge, and the incident hull.
+struct Reference {
+  const Hull& hull;
+  const Hull& other;
+  std::uint32_t edge;
+  bool flipped;  ///< The reference is shape b.
+};
+
+static std::uint32_t feature_id(const Reference& reference, std::uint32_t vertex, bool clipped) {
+  return (reference.flipped ? 0x100u : 0u) | (reference.edge << 4) | vertex |
+         (clipped ? 0x200u : 0u);
+}
+
+/// The line between two vertices, where these are what is closest; no point otherwise.
+static bool vertex_against_vertex(const Reference& reference, const Edge& incident,
+                                  const Vec<2>& a_to_b, float margin, Manifold<2>& manifold) {
+  const Edge edge = edge_of(reference.hull, reference.edge);
+  const Vec<2> p = reference.hull.vertices[edge.from];
+  const Vec<2> q = reference.other.vertices[incident.from];
+  const Vec<2> d1 = reference.hull.vertices[edge.to] - p;
+  const Vec<2> d2 = reference.other.vertices[incident.to] - q;
+  float s = 0.0f;
+  float t = 0.0f;
+  closest_fractions(p, d1, q, d2, s, t);
+  const bool ends = (s == 0.0f || s == 1.0f) && (t == 0.0f || t == 1.0f);
+  if (!ends) return false;
+  const Vec<2> on_reference = p + s * d1;
+  const Vec<2> on_other = q + t * d2;
+  const Vec<2> between = on_other - on_reference;
+  const float distance = length(between);
+  if (distance < 1.0e-6f) return false;
+  const float reach = reference.hull.radius + reference.other.radius;
+  if (distance - reach > margin) return true;
+  const Vec<2> direction = (1.0f / distance) * between;
+  const float separation = distance - reach;
+  manifold.normal = reference.flipped ? -direction : direction;
+  const Vec<2> surface = on_reference + reference.hull.radius * direction;
+  const std::uint32_t vertex = t == 0.0f ? incident.from : incident.to;
+  add_point(surface + (0.5f * separation) * direction, separation,
+            0x400u | feature_id(reference, vertex, s == 0.0f), a_to_b, manifold);
+  return true;
+}
+
+/// The incident edge cut to the width of the reference edge.
+static void clip_edges(const Reference& reference, const Edge& incident, const Vec<2>& a_to_b,
+                       float margin, Manifold<2>& manifold) {
+  const Edge edge = edge_of(reference.hull, reference.edge);
+  const Vec<2> normal = reference.hull.normals[reference.edge];
+  const Vec<2> from = reference.hull.vertices[edge.from];
+  const Vec<2> span = reference.hull.vertices[edge.to] - from;
+  const float width = length(span);
+  const Vec<2> tangent = (1.0f / width) * span;
+  // The incident edge runs against the reference edge; take its far end first.
+  const Vec<2> q[2] = {reference.other.vertices[incident.to],
+                       reference.other.vertices[incident.from]};
+  const std::uint32_t vertex[2] = {incident.to, incident.from};
+  const float x[2] = {dot(q[0] - from, tangent), dot(q[1] - from, tangent)};
+  if (x[1] < 0.0f || x[0] > width) return;
+
+  const float reach = reference.hull.radius + reference.other.radius;
+  manifold.normal = reference.flipped ? -normal : normal;
+  const float run = x[1] - x[0];
+  for (int i = 0; i < 2; ++i) {
+    const float bound = i == 0 ? 0.0f : width;
+    const bool outside = i == 0 ? x[0] < bound : x[1] > bound;
+    const float fraction = outside && run > 1.0e-9f ? (bound - x[0]) / run : (i == 0 ? 0.0f : 1.0f);
+    const Vec<2> point = q[0] + fraction * (q[1] - q[0]);
+    const float height = dot(normal, point - from);
+    const float separation = height - reach;
+    if (separation > margin) continue;
+    // Midway between the two surfaces along the normal.
+    const Vec<2> at =
+        point + (0.5f * (reference.hull.radius - reference.other.radius - height)) * normal;
+    add_point(at, separation, feature_id(reference, vertex[i], outside), a_to_b, manifold);
+  }
+}
+
+/// Whether a normal that another hull's edge proposes against a chain segment is one that the
+/// chain's own corner allows: between the segment's normal and its neighbour's.
+static bool chain_allows(const Hull& segment, const Vec<2>& normal) {
+  const Vec<2> own = segment.normals[0];
+  if (dot(normal, own) <= 0.0f) return false;
+  const bool towards_end = cross(own, normal) > 0.0f;
+  if ((segment.ghosts & (towards_end ? 2u : 1u)) == 0) return true;
+  const Vec<2> edge = towards_end ? segment.vertices[3] - segment.vertices[1]
+                                  : segment.vertices[0] - segment.vertices[2];
+  const Vec<2> neighbour = {{edge[1], -edge[0]}};
+  // On a convex corner the normal may turn as far as the neighbour's, on a concave one not at all.
+  const float corner = towards_end ? cross(own, neighbour) : cross(neighbour, own);
+  const float left = towards_end ? cross(normal, neighbour) : cross(neighbour, normal);
+  return corner > 0.0f && left >= 0.0f;
+}
+
+Manifold<2> hull_against_hull(const Hull& a, const Hull& b, const Vec<2>& a_to_b, float margin) {
+  const float reach = a.radius + b.radius;
+  const Axis axis_a = deepest_axis(a, b);
+  if (axis_a.separation > reach + margin) return {};
+  Axis axis_b = deepest_axis(b, a);
+  if (axis_b.separation > reach + margin) return {};
+  // A tie goes to shape a, so that resting boxes do not swap their reference from tick to tick.
+  constexpr float kPreference = 1.0e-4f;
+  bool flipped = axis_b.separation > axis_a.separation + kPreference;
+  if (a.one_sided && flipped) flipped = chain_allows(a, -b.normals[axis_b.edge]);
+  if (b.one_sided && !flipped) flipped = !chain_allows(b, -a.normals[axis_a.edge]);
+
+  const Reference reference =
+      flipped ? Reference{b, a, axis_b.edge, true} : Reference{a, b, axis_a.edge, false};
+  const Axis& axis = flipped ? axis_b : axis_a;
+  const Vec<2> normal = reference.hull.normals[reference.edge];
+  const Edge incident = edge_of(reference.other, incident_edge(reference.other, normal));
+  Manifold<2> manifold;
+  const bool chain = a.one_sided || b.one_sided;
+  // Two capsules in one line have no separating axis among their sides.
+  const bool ends_may_be_closest = axis.separation > 1.0e-4f || (a.count == 2 && b.count == 2);
+  if (ends_may_be_closest && !chain &&
+      vertex_against_vertex(reference, incident, a_to_b, margin, manifold))
+    return manifold;
+  clip_edges(reference, incident, a_to_b, margin, manifold);
+  return manifold;
+}
+
+Manifold<2> half_space_against_hull(const Vec<2>& normal, float offset, const Hull& hull,
+                                    const Vec<2>& a_to_b, float margin) {
+  std::uint32_t first = 0;
+  std::uint32_t second = 0;
+  float height[8];
+  for (std::uint32_t i = 0; i < hull.count; ++i) {
+    height[i] = dot(normal, hull.vertices[i]) - offset;
+    if (height[i] < height[first]) first = i;
+  }
+  second = first == 0 ? 1 : 0;
+  for (std::uint32_t i = 0; i < hull.count; ++i)
+    if (i != first && height[i] < height[second]) second = i;
+
+  Manifold<2> manifold;
+  manifold.normal = normal;
+  // In index order, not by depth, so that two nearly equal depths do not swap the points.
+  const std::uint32_t low = first < second ? first : second;
+  const std::uint32_t high = first < second ? second : first;
+  for (const std::uint32_t i : {low, high}) {
+    const float separation = height[i] - hull.radius;
+    if (separation > margin) continue;
+    const Vec<2> at = hull.vertices[i] - (hull.radius + 0.5f * separation) * normal;
+    add_point(at, separation, i, a_to_b, manifold);
+  }
+  return manifold;
+}
+
+}  // namespace cycloid::solver

@@ -1,0 +1,9 @@
+#pragma once
+
+namespace cycloid::solver {
+
+/// Whether this thread rounds to nearest and keeps subnormal numbers. A library that was linked
+/// with -ffast-math switches subnormals off for the whole process when it is loaded.
+bool floating_point_mode_is_ieee();
+
+}  // namespace cycloid::solver

@@ -1,0 +1,94 @@
+#pragma once
+
+#include <cstring>
+
+namespace cycloid::solver {
+
+/// The vector of W floats and of W masks. One explicit row per width, because GCC 12 can neither
+/// subscript nor overload on a vector type whose size depends on a template parameter.
+template <int W>
+struct RawLanes;
+template <>
+struct RawLanes<1> {
+  typedef float Float __attribute__((vector_size(4)));
+  typedef int Mask __attribute__((vector_size(4)));
+};
+template <>
+struct RawLanes<4> {
+  typedef float Float __attribute__((vector_size(16)));
+  typedef int Mask __attribute__((vector_size(16)));
+};
+template <>
+struct RawLanes<8> {
+  typedef float Float __attribute__((vector_size(32)));
+  typedef int Mask __attribute__((vector_size(32)));
+};
+template <>
+struct RawLanes<16> {
+  typedef float Float __attribute__((vector_size(64)));
+  typedef int Mask __attribute__((vector_size(64)));
+};
+
+/// W independent floats: the arithmetic of every wide kernel. `Lanes<1>` is the scalar path, so a
+/// kernel is written once.
+///
+/// Lanes never mix (there is no horizontal sum), so a result depends neither on W nor on the
+/// target's vector width. `min` and `max` are selects because hardware min and max disagree on
+/// signed zero and NaN. There is no fused multiply-add, reciprocal or reciprocal square root:
+/// targets round those differently. docs/determinism.md has the measurements.
+template <int W>
+struct Lanes {
+  using Raw = typename RawLanes<W>::Float;
+  using Mask = typename RawLanes<W>::Mask;
+  Raw raw;
+
+  Lanes() = default;
+  explicit Lanes(Raw r) : raw(r) {}
+  Lanes(float x) : raw(Raw{} + x) {}  // NOLINT: a scalar constant is the same in every lane.
+
+  static Lanes load(const float* from) {
+    Lanes lanes;
+    std::memcpy(&lanes.raw, from, sizeof lanes.raw);
+    return lanes;
+  }
+  void store(float* to) const { std::memcpy(to, &raw, sizeof raw); }
+
+  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.raw + b.raw); }
+  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.raw - b.raw); }
+  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.raw * b.raw); }
+  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.raw / b.raw); }
+  friend Lanes operator-(Lanes a) { return Lanes(-a.raw); }
+  Lanes& operator+=(Lanes b) { return *this = *this + b; }
+  Lanes& operator-=(Lanes b) { return *this = *this - b; }
+
+  friend Mask operator<(Lanes a, Lanes b) { return a.raw < b.raw; }
+  friend Mask operator>(Lanes a, Lanes b) { return a.raw > b.raw; }
+  friend Lanes max(Lanes a, Lanes b) { return Lanes(a.raw > b.raw ? a.raw : b.raw); }
+  friend Lanes min(Lanes a, Lanes b) { return Lanes(a.raw < b.raw ? a.raw : b.raw); }
+  friend Lanes select(Mask mask, Lanes yes, Lanes no) { return Lanes(mask ? yes.raw : no.raw); }
+  friend Lanes sqrt(Lanes a) {
+    for (int lane = 0; lane < W; ++lane) a.raw[lane] = __builtin_sqrtf(a.raw[lane]);
+    return a;
+  }
+};
+
+inline float max(float a, float b) {
+  return a > b ? a : b;
+}
+inline float min(float a, float b) {
+  return a < b ? a : b;
+}
+inline float select(bool mask, float yes, float no) {
+  return mask ? yes : no;
+}
+inline float sqrt(float a) {
+  return __builtin_sqrtf(a);
+}
+inline float abs(float a) {
+  return a < 0.0f ? -a : a;
+}
+inline float clamp(float a, float lower, float upper) {
+  return max(lower, min(a, upper));
+}
+
+}  // namespace cycloid::solver

@@ -1,0 +1,133 @@
+#include "solver/mass.hpp"
+
+#include <Eigen/LU>
+
+#include "solver/trig.hpp"
+
+namespace cycloid::solver {
+
+/// m (|r|^2 1 - r r^T): the second moment of a point of mass m at r (in the plane: m |r|^2).
+static Inertia<2> point_inertia(float mass, const Vec<2>& r) {
+  return {{mass * dot(r, r)}};
+}
+static Inertia<3> point_inertia(float mass, const Vec<3>& r) {
+  Inertia<3> inertia;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      inertia.m[i * 3 + j] = mass * ((i == j ? dot(r, r) : 0.0f) - r[i] * r[j]);
+  return inertia;
+}
+
+template <int D>
+static void add_to(Inertia<D>& into, const Inertia<D>& other, float scale) {
+  for (int i = 0; i < Dim<D>::kSpin * Dim<D>::kSpin; ++i) into.m[i] += scale * other.m[i];
+}
+
+/// A part of mass m with its centre at c and the moment `about_centre`.
+template <int D>
+static void add_part(float mass, const Vec<D>& centre, const Inertia<D>& about_centre,
+                     MassProperties<D>& into) {
+  into.mass += mass;
+  into.first += mass * centre;
+  add_to(into.second, about_centre, 1.0f);
+  add_to(into.second, point_inertia(mass, centre), 1.0f);
+}
+
+static Inertia<2> ball_inertia(float mass, float r, const Vec<2>&) {
+  return {{0.5f * mass * r * r}};
+}
+static Inertia<3> ball_inertia(float mass, float r, const Vec<3>&) {
+  const float i = 0.4f * mass * r * r;
+  return {{i, 0.0f, 0.0f, 0.0f, i, 0.0f, 0.0f, 0.0f, i}};
+}
+static float ball_volume(float r, const Vec<2>&) {
+  return kPi * r * r;
+}
+static float ball_volume(float r, const Vec<3>&) {
+  return 4.0f / 3.0f * kPi * r * r * r;
+}
+
+/// The polygon of the vertices alone, as triangles from vertex 0.
+static void add_core(const Shape<2>& shape, float density, MassProperties<2>& into) {
+  const Vec<2> origin = shape.vertices[0];
+  for (std::uint32_t i = 1; i + 1 < shape.vertex_count; ++i) {
+    const Vec<2> a = shape.vertices[i] - origin;
+    const Vec<2> b = shape.vertices[i + 1] - origin;
+    const float mass = 0.5f * density * cross(a, b);
+    const Vec<2> centre = (1.0f / 3.0f) * (a + b);
+    const float about_corner = mass / 6.0f * (dot(a, a) + dot(a, b) + dot(b, b));
+    add_part(mass, origin + centre, {{about_corner - mass * dot(centre, centre)}}, into);
+  }
+}
+
+/// The rounding: a rectangle on every edge and a sector of a disc at every vertex.
+static void add_rounding(const Shape<2>& shape, float density, MassProperties<2>& into) {
+  const float r = shape.radius;
+  for (std::uint32_t i = 0; i < shape.vertex_count; ++i) {
+    const std::uint32_t next = i + 1 < shape.vertex_count ? i + 1 : 0;
+    const std::uint32_t before = i > 0 ? i - 1 : shape.vertex_count - 1;
+    const Vec<2> p = shape.vertices[i];
+    const Vec<2> n = shape.normals[i];
+    const Vec<2> edge = shape.vertices[next] - p;
+    const float edge_length = length(edge);
+    const float rectangle = density * edge_length * r;
+    add_part(rectangle, p + 0.5f * edge + (0.5f * r) * n,
+             {{rectangle / 12.0f * (edge_length * edge_length + r * r)}}, into);
+
+    const Vec<2> n_before = shape.normals[before];
+    float angle = atan2(cross(n_before, n), dot(n_before, n));
+    if (angle <= 0.0f) angle += 2.0f * kPi;  // The end of a capsule turns by pi.
+    const float sector = 0.5f * density * r * r * angle;
+    float sine = 0.0f;
+    float cosine = 0.0f;
+    sin_cos(0.5f * angle, sine, cosine);
+    const float reach = 4.0f * r * sine / (3.0f * angle);
+    const Vec<2> middle = rotate(Vec<2>{{cosine, sine}}, n_before);
+    const float about_centre = 0.5f * sector * r * r - sector * reach * reach;
+    add_part(sector, p + reach * middle, {{about_centre}}, into);
+  }
+}
+
+static void add_hull(const Shape<2>& shape, float density, MassProperties<2>& into) {
+  add_core(shape, density, into);
+  if (shape.radius > 0.0f) add_rounding(shape, density, into);
+}
+static void add_hull(const Shape<3>&, float, MassProperties<3>&) {}
+
+template <int D>
+void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into) {
+  if (shape.kind == ShapeKind::kBall) {
+    const Vec<D> centre = shape.vertices[0];
+    const float mass = density * ball_volume(shape.radius, centre);
+    add_part(mass, centre, ball_inertia(mass, shape.radius, centre), into);
+  } else if (shape.kind == ShapeKind::kCapsule || shape.kind == ShapeKind::kPolygon) {
+    add_hull(shape, density, into);
+  }
+}
+
+template <int D>
+Inertia<D> central_inertia(const MassProperties<D>& properties) {
+  const Vec<D> centre = (1.0f / properties.mass) * properties.first;
+  Inertia<D> inertia = properties.second;
+  add_to(inertia, point_inertia(properties.mass, centre), -1.0f);
+  return inertia;
+}
+
+template <int D>
+Inertia<D> inverse(const Inertia<D>& inertia) {
+  constexpr int kSpin = Dim<D>::kSpin;
+  using Matrix = Eigen::Matrix<float, kSpin, kSpin>;
+  const Matrix matrix = Eigen::Map<const Matrix>(inertia.m);
+  Inertia<D> result{};
+  if (matrix.determinant() > 0.0f) Eigen::Map<Matrix>(result.m) = matrix.inverse();
+  return result;
+}
+
+template void add_mass(const Shape<2>&, float, MassProperties<2>&);
+template void add_mass(const Shape<3>&, float, MassProperties<3>&);
+template Inertia<2> central_inertia(const MassProperties<2>&);
+template Inertia<3> central_inertia(const MassProperties<3>&);
+template Inertia<2> inverse(const Inertia<2>&);
+template Inertia<3> inverse(const Inertia<3>&);
+
+}  // namespace cycloid::solver

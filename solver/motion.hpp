@@ -1,0 +1,27 @@
+#pragma once
+
+#include "solver/dim.hpp"
+#include "solver/state.hpp"
+
+namespace cycloid::solver {
+
+/// What a substep changes of a body, in one record that a lane gathers: 32 bytes in the plane.
+/// Positions are deltas since the start of the tick, so they keep their digits far from the origin.
+template <int D>
+struct alignas(Dim<D>::kMotionFloats * 4) Motion {
+  Vec<D> velocity;        ///< m/s
+  Spin<D> spin;           ///< rad/s
+  Vec<D> delta_position;  ///< m
+  Rotation<D> delta_rotation;
+};
+
+static_assert(sizeof(Motion<2>) == 32 && sizeof(Motion<3>) == 64);
+
+/// What the sweeps need of a body besides its motion, constant during a tick.
+template <int D>
+struct BodyMass {
+  float inverse_mass;
+  Inertia<D> inverse_inertia;  ///< World frame at the start of the tick.
+};
+
+}  // namespace cycloid::solver

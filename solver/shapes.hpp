@@ -1,0 +1,22 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/definitions.hpp"
+#include "solver/result.hpp"
+#include "solver/state.hpp"
+
+namespace cycloid::solver {
+
+/// Appends the records that one definition makes (a chain makes one per edge), in the body frame.
+/// Polygons come out counter-clockwise.
+/// @pre validate(def, ...) is ok. @returns kInvalid "points" for a polygon that is degenerate or
+/// not convex and for a chain or capsule with a zero-length edge; then nothing was appended.
+template <int D>
+Error append_shapes(const ShapeDef<D>& def, int index, std::vector<Shape<D>>& into);
+
+/// Moves a record from the body frame to the frame of the centre of mass.
+template <int D>
+void shift_shape(const Vec<D>& local_center, Shape<D>& shape);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,80 @@
+#include "solver/collision/collide.hpp"
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+template <int D>
+static Manifold<D> collide_pair(const StepContext<D>& context, const WorldState<D>& state,
+                                const ShapePair& pair) {
+  const Shape<D>& shape_a = state.shapes[pair.shape_a];
+  const Shape<D>& shape_b = state.shapes[pair.shape_b];
+  const Body<D>& a = state.bodies[shape_a.body];
+  const Body<D>& b = state.bodies[shape_b.body];
+  const float margin =
+      context.tuning.speculative_distance + context.tick_s * length(b.velocity - a.velocity);
+  return collide(shape_a, Pose<D>{a.position, a.rotation}, shape_b, Pose<D>{b.position, b.rotation},
+                 margin);
+}
+
+/// The impulses of the point with the same feature, so that a contact which persists starts from
+/// last tick's solution.
+template <int D>
+static void take_impulses(const Contact<D>& old, ContactPoint<D>& point) {
+  for (std::uint32_t i = 0; i < old.point_count; ++i) {
+    if (old.points[i].feature != point.feature) continue;
+    point.normal_impulse = old.points[i].normal_impulse;
+    point.tangent_impulse = old.points[i].tangent_impulse;
+    return;
+  }
+}
+
+template <int D>
+static Contact<D> contact_of(const ShapePair& pair, const Manifold<D>& manifold, float slop,
+                             const Contact<D>* old) {
+  Contact<D> contact{};
+  contact.shape_a = pair.shape_a;
+  contact.shape_b = pair.shape_b;
+  contact.point_count = manifold.point_count;
+  for (std::uint32_t i = 0; i < manifold.point_count; ++i) {
+    contact.points[i].feature = manifold.points[i].feature;
+    if (manifold.points[i].separation <= slop) contact.touching = 1;
+    if (old != nullptr) take_impulses(*old, contact.points[i]);
+  }
+  return contact;
+}
+
+/// The contact points of every pair, with last tick's impulses where the same features met.
+///
+/// Reads pairs, shapes, poses, velocities and the old contacts; writes pair_manifolds, contacts and
+/// manifolds. Each pair writes its own manifold; contacts are then listed in the order of the
+/// pairs, which is that of the shapes' slots, beside the old ones in the same order.
+template <int D>
+void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                   StepScratch<D>& scratch) {
+  scratch.pair_manifolds.resize(scratch.pairs.size());
+  workers.parallel_for(static_cast<int>(scratch.pairs.size()), kPairGrain, [&](Range range) {
+    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
+         ++i)
+      scratch.pair_manifolds[i] = collide_pair(context, state, scratch.pairs[i]);
+  });
+
+  scratch.contacts.clear();
+  scratch.manifolds.clear();
+  auto old = state.contacts.begin();
+  for (std::size_t i = 0; i < scratch.pairs.size(); ++i) {
+    if (scratch.pair_manifolds[i].point_count == 0) continue;
+    const ShapePair& pair = scratch.pairs[i];
+    while (old != state.contacts.end() && ShapePair{old->shape_a, old->shape_b}.key() < pair.key())
+      ++old;
+    const bool persists =
+        old != state.contacts.end() && old->shape_a == pair.shape_a && old->shape_b == pair.shape_b;
+    scratch.contacts.push_back(contact_of(pair, scratch.pair_manifolds[i], context.tuning.slop,
+                                          persists ? &*old : nullptr));
+    scratch.manifolds.push_back(scratch.pair_manifolds[i]);
+  }
+}
+
+template void collide_pairs(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);
+template void collide_pairs(const StepContext<3>&, const WorldState<3>&, Workers&, StepScratch<3>&);
+
+}  // namespace cycloid::solver

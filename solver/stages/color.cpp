@@ -1,0 +1,90 @@
+#include <bit>
+
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// More colours than this would leave each with too little to share among lanes and threads.
+static constexpr int kColorsMax = 28;
+
+struct BodyPair {
+  std::uint32_t a;
+  std::uint32_t b;
+  bool a_moves;
+  bool b_moves;
+};
+
+/// Gives each constraint, in order, the lowest colour that neither of its moving bodies has yet.
+template <class PairOf>
+static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_t>& used,
+                           std::vector<int>& color_of, Coloring& coloring) {
+  int size_of[kColorsMax + 1] = {};
+  color_of.resize(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i) {
+    const BodyPair pair = pair_of(i);
+    const std::uint32_t taken =
+        (pair.a_moves ? used[pair.a] : 0) | (pair.b_moves ? used[pair.b] : 0);
+    int color = std::countr_one(taken);
+    if (color >= kColorsMax) color = kColorsMax;
+    if (color < kColorsMax) {
+      if (pair.a_moves) used[pair.a] |= 1u << color;
+      if (pair.b_moves) used[pair.b] |= 1u << color;
+    }
+    color_of[static_cast<std::size_t>(i)] = color;
+    ++size_of[color];
+  }
+  int next[kColorsMax + 1];
+  int at = 0;
+  coloring.colors.clear();
+  for (int color = 0; color <= kColorsMax; ++color) {
+    next[color] = at;
+    const Range range{at, at + size_of[color]};
+    if (color == kColorsMax)
+      coloring.overflow = range;
+    else if (size_of[color] > 0)
+      coloring.colors.push_back(range);
+    at = range.end;
+  }
+  coloring.order.resize(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i)
+    coloring.order[static_cast<std::size_t>(next[color_of[static_cast<std::size_t>(i)]]++)] = i;
+}
+
+/// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes.
+///
+/// Reads joints, contacts, shapes and the kinds of bodies; writes both colourings. Serial, because
+/// each choice depends on those before; a function of ids alone, so not of workers or history.
+template <int D>
+void color(const WorldState<D>& state, StepScratch<D>& scratch) {
+  const auto moves = [&](std::uint32_t body) { return state.bodies[body].inverse_mass > 0.0f; };
+  std::vector<int>& joints = scratch.live_joints;
+  joints.clear();
+  for (int i = 0; i < static_cast<int>(state.joints.size()); ++i)
+    if (state.joints[static_cast<std::size_t>(i)].kind != JointKind::kFree) joints.push_back(i);
+  scratch.used_colors.assign(state.bodies.size(), 0);
+  color_in_order(
+      static_cast<int>(joints.size()),
+      [&](int i) {
+        const auto slot = static_cast<std::size_t>(joints[static_cast<std::size_t>(i)]);
+        const Joint<D>& joint = state.joints[slot];
+        return BodyPair{joint.body_a, joint.body_b, moves(joint.body_a), moves(joint.body_b)};
+      },
+      scratch.used_colors, scratch.color_of, scratch.joint_coloring);
+  for (int& index : scratch.joint_coloring.order) index = joints[static_cast<std::size_t>(index)];
+
+  scratch.used_colors.assign(state.bodies.size(), 0);
+  color_in_order(
+      static_cast<int>(scratch.contacts.size()),
+      [&](int i) {
+        const Contact<D>& contact = scratch.contacts[static_cast<std::size_t>(i)];
+        const std::uint32_t a = state.shapes[contact.shape_a].body;
+        const std::uint32_t b = state.shapes[contact.shape_b].body;
+        return BodyPair{a, b, moves(a), moves(b)};
+      },
+      scratch.used_colors, scratch.color_of, scratch.contact_coloring);
+}
+
+template void color(const WorldState<2>&, StepScratch<2>&);
+template void color(const WorldState<3>&, StepScratch<3>&);
+
+}  // namespace cycloid::solver

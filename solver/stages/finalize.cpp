@@ -1,0 +1,57 @@
+#include "solver/stages/stages.hpp"
+#include "solver/validate.hpp"
+
+namespace cycloid::solver {
+
+/// Reads motions; writes nothing. Serial and in slot order, so every machine names the same body.
+template <int D>
+Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch) {
+  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+    const Motion<D>& motion = scratch.motions[i];
+    FaultField field = kFaultNone;
+    if (!within(motion.spin, kSpinMax)) field = kFaultSpin;
+    if (!within(motion.velocity, kSpeedMax)) field = kFaultVelocity;
+    if (!within(motion.delta_rotation, 2.0f)) field = kFaultRotation;
+    if (!within(state.bodies[i].position + motion.delta_position, kPositionMax))
+      field = kFaultPosition;
+    if (field != kFaultNone) return {state.header.tick + 1, {i, state.bodies[i].generation}, field};
+  }
+  return {};
+}
+
+/// x' = x + dx, q' = dq q at unit length; the contacts and impulses of this tick become the
+/// state's; forces are spent.
+///
+/// Reads motions, contacts and joint rows; writes bodies, contacts, joints and the tick. Everything
+/// before this stage left the state as it was, so a fault costs nothing to undo.
+template <int D>
+void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    Body<D>& body = state.bodies[i];
+    if (body.kind == BodyKind::kFree) continue;
+    body.force = Vec<D>::zero();
+    body.torque = Spin<D>::zero();
+    if (body.kind == BodyKind::kStatic) continue;
+    const Motion<D>& motion = scratch.motions[i];
+    body.velocity = motion.velocity;
+    body.spin = motion.spin;
+    body.position += motion.delta_position;
+    body.rotation = normalized_or(compose(motion.delta_rotation, body.rotation), body.rotation);
+  }
+  for (const JointRow<D>& row : scratch.joint_rows) {
+    Joint<D>& joint = state.joints[row.joint];
+    joint.impulse = row.impulse;
+    joint.motor_impulse = row.motor_impulse;
+    joint.lower_impulse = row.lower_impulse;
+    joint.upper_impulse = row.upper_impulse;
+  }
+  state.contacts.swap(scratch.contacts);
+  ++state.header.tick;
+}
+
+template Fault find_fault(const WorldState<2>&, const StepScratch<2>&);
+template Fault find_fault(const WorldState<3>&, const StepScratch<3>&);
+template void finalize(StepScratch<2>&, WorldState<2>&);
+template void finalize(StepScratch<3>&, WorldState<3>&);
+
+}  // namespace cycloid::solver

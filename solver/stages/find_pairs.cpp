@@ -1,0 +1,130 @@
+#include <algorithm>
+
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+static bool moves(BodyKind kind) {
+  return kind != BodyKind::kStatic;
+}
+
+/// Only a body that forces move answers to a contact.
+static bool responds(BodyKind kind) {
+  return kind == BodyKind::kDynamic || kind == BodyKind::kParticle;
+}
+
+static bool filters_meet(const Filter& a, const Filter& b) {
+  if (a.group != 0 && a.group == b.group) return a.group > 0;
+  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+}
+
+static std::uint64_t body_pair_key(std::uint32_t a, std::uint32_t b) {
+  return a < b ? (std::uint64_t{a} << 32) | b : (std::uint64_t{b} << 32) | a;
+}
+
+template <int D>
+static bool may_touch(const WorldState<D>& state, const StepScratch<D>& scratch,
+                      std::uint32_t shape_a, std::uint32_t shape_b) {
+  const Shape<D>& a = state.shapes[shape_a];
+  const Shape<D>& b = state.shapes[shape_b];
+  if (a.body == b.body) return false;
+  if (!responds(state.bodies[a.body].kind) && !responds(state.bodies[b.body].kind)) return false;
+  if (!filters_meet(a.filter, b.filter)) return false;
+  return !std::binary_search(scratch.jointed_bodies.begin(), scratch.jointed_bodies.end(),
+                             body_pair_key(a.body, b.body));
+}
+
+template <int D>
+static void list_jointed_bodies(const WorldState<D>& state, StepScratch<D>& scratch) {
+  scratch.jointed_bodies.clear();
+  for (const Joint<D>& joint : state.joints)
+    if (joint.kind != JointKind::kFree && joint.collide_connected == 0)
+      scratch.jointed_bodies.push_back(body_pair_key(joint.body_a, joint.body_b));
+  std::sort(scratch.jointed_bodies.begin(),
+            scratch.jointed_bodies.end());  // Total order: integers.
+}
+
+/// A body reaches as far as it flies in a tick, so that what it will hit is among the pairs.
+template <int D>
+static float reach_of(const StepContext<D>& context, const Body<D>& body) {
+  return context.tuning.speculative_distance + context.tick_s * length(body.velocity);
+}
+
+template <int D>
+static void list_leaves(const StepContext<D>& context, const WorldState<D>& state,
+                        StepScratch<D>& scratch) {
+  scratch.leaves.clear();
+  scratch.unbounded.clear();
+  for (std::uint32_t s = 0; s < state.shapes.size(); ++s) {
+    const Shape<D>& shape = state.shapes[s];
+    if (shape.kind == ShapeKind::kFree) continue;
+    if (shape.kind == ShapeKind::kHalfSpace) {
+      scratch.unbounded.push_back(s);
+      continue;
+    }
+    const Body<D>& body = state.bodies[shape.body];
+    const Pose<D> pose{body.position, body.rotation};
+    scratch.leaves.push_back({bounds_of(shape, pose, reach_of(context, body)), s});
+  }
+}
+
+static ShapePair ordered(std::uint32_t a, std::uint32_t b) {
+  return a < b ? ShapePair{a, b} : ShapePair{b, a};
+}
+
+/// Pairs of the leaves in `range`: each with the half-spaces, and with the leaves it overlaps. Of
+/// two that both move, the lower rank reports the pair; a static leaf never looks.
+template <int D>
+static void find_in_range(const WorldState<D>& state, const StepScratch<D>& scratch, Range range,
+                          std::vector<ShapePair>& found) {
+  found.clear();
+  const auto moving = [&](std::uint32_t shape) {
+    return moves(state.bodies[state.shapes[shape].body].kind);
+  };
+  for (int rank = range.begin; rank < range.end; ++rank) {
+    const auto& leaf = scratch.tree.leaf(rank);
+    if (!moving(leaf.id)) continue;
+    for (const std::uint32_t half_space : scratch.unbounded)
+      if (may_touch(state, scratch, leaf.id, half_space))
+        found.push_back(ordered(leaf.id, half_space));
+    scratch.tree.query(leaf.bounds, [&](int other_rank) {
+      const std::uint32_t other = scratch.tree.leaf(other_rank).id;
+      if (other == leaf.id || (other_rank < rank && moving(other))) return;
+      if (may_touch(state, scratch, leaf.id, other)) found.push_back(ordered(leaf.id, other));
+    });
+  }
+}
+
+/// Every pair of shapes whose boxes, widened by the speculative distance and a tick's flight,
+/// overlap and that may touch.
+///
+/// Reads shapes, bodies and joints; writes leaves, tree and pairs. Chunks of leaves write lists of
+/// their own, and the lists are sorted by shape slots at the end, so neither threads nor the shape
+/// of the tree show in the result.
+template <int D>
+void find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                StepScratch<D>& scratch) {
+  list_jointed_bodies(state, scratch);
+  list_leaves(context, state, scratch);
+  scratch.tree.build(scratch.leaves);
+  const int chunks = (scratch.tree.size() + kPairGrain - 1) / kPairGrain;
+  if (scratch.found.size() < static_cast<std::size_t>(chunks))
+    scratch.found.resize(static_cast<std::size_t>(chunks));
+  workers.parallel_for(scratch.tree.size(), kPairGrain, [&](Range range) {
+    find_in_range(state, scratch, range,
+                  scratch.found[static_cast<std::size_t>(range.begin / kPairGrain)]);
+  });
+  scratch.pairs.clear();
+  for (int i = 0; i < chunks; ++i) {
+    const auto& found = scratch.found[static_cast<std::size_t>(i)];
+    scratch.pairs.insert(scratch.pairs.end(), found.begin(), found.end());
+  }
+  // Total order: a pair of slots is found once.
+  std::sort(scratch.pairs.begin(), scratch.pairs.end(),
+            [](const ShapePair& a, const ShapePair& b) { return a.key() < b.key(); });
+}
+
+template void find_pairs(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);
+template void find_pairs(const StepContext<3>&, const WorldState<3>&, Workers&, StepScratch<3>&);
+
+}  // namespace cycloid::solver

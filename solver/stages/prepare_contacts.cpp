@@ -1,0 +1,198 @@
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// The numbers of one contact, before they take their lane. Dimension in, floats out.
+template <int D>
+struct ContactNumbers {
+  std::uint32_t body_a;
+  std::uint32_t body_b;
+  float friction;
+  float restitution;
+  Softness softness;
+};
+
+template <int D>
+static ContactNumbers<D> numbers_of(const StepContext<D>& context, const WorldState<D>& state,
+                                    const Contact<D>& contact) {
+  const Shape<D>& a = state.shapes[contact.shape_a];
+  const Shape<D>& b = state.shapes[contact.shape_b];
+  const Material& material_a = state.materials[a.material];
+  const Material& material_b = state.materials[b.material];
+  const bool both_move =
+      state.bodies[a.body].inverse_mass > 0.0f && state.bodies[b.body].inverse_mass > 0.0f;
+  return {a.body, b.body, sqrt(material_a.friction * material_b.friction),
+          max(material_a.restitution, material_b.restitution),
+          both_move ? context.contact : context.contact_static};
+}
+
+template <int W>
+static void set_lane(Lanes<W>& lanes, int lane, float value) {
+  float values[W];
+  lanes.store(values);
+  values[lane] = value;
+  lanes = Lanes<W>::load(values);
+}
+template <int N, int W>
+static void set_lane(Vec<N, Lanes<W>>& lanes, int lane, const Vec<N>& value) {
+  for (int i = 0; i < N; ++i) set_lane(lanes[i], lane, value[i]);
+}
+
+template <int D, int W>
+static void set_mass(LaneMass<D, W>& lanes, int lane, const BodyMass<D>& mass) {
+  set_lane(lanes.inverse_mass, lane, mass.inverse_mass);
+  for (int i = 0; i < Dim<D>::kSpin * Dim<D>::kSpin; ++i)
+    set_lane(lanes.inverse_inertia[i], lane, mass.inverse_inertia.m[i]);
+}
+
+/// (J M^-1 J^T)^-1 of a row along `direction`; 0 where nothing moves.
+template <int D>
+static float effective_mass(const BodyMass<D>& a, const BodyMass<D>& b, const Vec<D>& r_a,
+                            const Vec<D>& r_b, const Vec<D>& direction) {
+  const Spin<D> turn_a = moment(r_a, direction);
+  const Spin<D> turn_b = moment(r_b, direction);
+  const float k = a.inverse_mass + b.inverse_mass + dot(turn_a, a.inverse_inertia * turn_a) +
+                  dot(turn_b, b.inverse_inertia * turn_b);
+  return k > 0.0f ? 1.0f / k : 0.0f;
+}
+
+template <int D>
+struct PointInput {
+  const ManifoldPoint<D>& geometry;
+  const ContactPoint<D>& impulses;
+  const Motion<D>& motion_a;
+  const Motion<D>& motion_b;
+  const BodyMass<D>& mass_a;
+  const BodyMass<D>& mass_b;
+};
+
+template <int D, int W>
+static void set_point(typename ContactBlock<D, W>::Point& point, int lane, const Vec<D>& normal,
+                      const PointInput<D>& in) {
+  const Vec<D>& r_a = in.geometry.anchor_a;
+  const Vec<D>& r_b = in.geometry.anchor_b;
+  set_lane(point.r_a, lane, r_a);
+  set_lane(point.r_b, lane, r_b);
+  set_lane(point.adjusted_separation, lane, in.geometry.separation - dot(r_b - r_a, normal));
+  set_lane(point.normal_mass, lane, effective_mass(in.mass_a, in.mass_b, r_a, r_b, normal));
+  set_lane(point.normal_impulse, lane, in.impulses.normal_impulse);
+  const Vec<D> velocity = (in.motion_b.velocity + spin_cross(in.motion_b.spin, r_b)) -
+                          (in.motion_a.velocity + spin_cross(in.motion_a.spin, r_a));
+  set_lane(point.relative_velocity, lane, dot(normal, velocity));
+  Vec<D> tangent[Dim<D>::kTangents];
+  tangents(normal, tangent);
+  for (int t = 0; t < Dim<D>::kTangents; ++t) {
+    set_lane(point.tangent_mass[t], lane,
+             effective_mass(in.mass_a, in.mass_b, r_a, r_b, tangent[t]));
+    set_lane(point.tangent_impulse[t], lane, in.impulses.tangent_impulse[t]);
+  }
+}
+
+template <int D, int W>
+static void set_contact(const StepContext<D>& context, const WorldState<D>& state,
+                        const StepScratch<D>& scratch, int index, int lane,
+                        ContactBlock<D, W>& block) {
+  const auto i = static_cast<std::size_t>(index);
+  const auto l = static_cast<std::size_t>(lane);
+  const Contact<D>& contact = scratch.contacts[i];
+  const Manifold<D>& manifold = scratch.manifolds[i];
+  const ContactNumbers<D> numbers = numbers_of(context, state, contact);
+  block.body_a[l] = numbers.body_a;
+  block.body_b[l] = numbers.body_b;
+  block.contact[l] = static_cast<std::uint32_t>(index);
+  const BodyMass<D>& mass_a = scratch.masses[numbers.body_a];
+  const BodyMass<D>& mass_b = scratch.masses[numbers.body_b];
+  set_mass(block.mass_a, lane, mass_a);
+  set_mass(block.mass_b, lane, mass_b);
+  set_lane(block.normal, lane, manifold.normal);
+  Vec<D> tangent[Dim<D>::kTangents];
+  tangents(manifold.normal, tangent);
+  for (int t = 0; t < Dim<D>::kTangents; ++t) set_lane(block.tangent[t], lane, tangent[t]);
+  set_lane(block.share_b, lane, mass_b.inverse_mass / (mass_a.inverse_mass + mass_b.inverse_mass));
+  set_lane(block.friction, lane, numbers.friction);
+  set_lane(block.restitution, lane, numbers.restitution);
+  set_lane(block.bias_rate, lane, numbers.softness.bias_rate);
+  set_lane(block.mass_scale, lane, numbers.softness.mass_scale);
+  set_lane(block.impulse_scale, lane, numbers.softness.impulse_scale);
+  if (contact.point_count > block.point_count) block.point_count = contact.point_count;
+  for (std::uint32_t p = 0; p < contact.point_count; ++p) {
+    const PointInput<D> in{manifold.points[p],
+                           contact.points[p],
+                           scratch.motions[numbers.body_a],
+                           scratch.motions[numbers.body_b],
+                           mass_a,
+                           mass_b};
+    set_point<D, W>(block.points[p], lane, manifold.normal, in);
+  }
+}
+
+template <int D, int W>
+static ContactBlock<D, W> empty_block(std::uint32_t resting_body) {
+  ContactBlock<D, W> block{};
+  block.body_a.fill(resting_body);
+  block.body_b.fill(resting_body);
+  block.contact.fill(kNone);
+  return block;
+}
+
+/// Which contacts of the colouring's order a block holds.
+static Range contacts_of_block(const Range& color, int block, int width) {
+  const int begin = color.begin + block * width;
+  return {begin, begin + width < color.end ? begin + width : color.end};
+}
+
+/// Fills blocks of W contacts, colour by colour; the overflow gets one contact per block.
+///
+/// Reads contacts, manifolds, materials, masses and motions; writes the blocks of width W, each
+/// from its own contacts, so any split into ranges gives the same bits.
+template <int D, int W>
+void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                      StepScratch<D>& scratch) {
+  auto& out = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const Coloring& coloring = scratch.contact_coloring;
+  const auto resting = static_cast<std::uint32_t>(state.bodies.size());
+  out.colors.clear();
+  int blocks = 0;
+  for (const Range& color : coloring.colors) {
+    const int count = (color.end - color.begin + W - 1) / W;
+    out.colors.push_back({blocks, blocks + count});
+    blocks += count;
+  }
+  out.overflow = {blocks, blocks + coloring.overflow.end - coloring.overflow.begin};
+  out.blocks.resize(static_cast<std::size_t>(out.overflow.end));
+  const auto fill = [&](int block, Range members) {
+    auto& into = out.blocks[static_cast<std::size_t>(block)];
+    into = empty_block<D, W>(resting);
+    for (int i = members.begin; i < members.end; ++i)
+      set_contact(context, state, scratch, coloring.order[static_cast<std::size_t>(i)],
+                  i - members.begin, into);
+  };
+  for (std::size_t c = 0; c < out.colors.size(); ++c) {
+    const Range color = out.colors[c];
+    workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
+      for (int i = range.begin; i < range.end; ++i)
+        fill(color.begin + i, contacts_of_block(coloring.colors[c], i, W));
+    });
+  }
+  for (int i = out.overflow.begin; i < out.overflow.end; ++i)
+    fill(i, contacts_of_block(coloring.overflow, i - out.overflow.begin, 1));
+}
+
+template void prepare_contacts<2, 1>(const StepContext<2>&, const WorldState<2>&, Workers&,
+                                     StepScratch<2>&);
+template void prepare_contacts<2, 4>(const StepContext<2>&, const WorldState<2>&, Workers&,
+                                     StepScratch<2>&);
+template void prepare_contacts<2, 8>(const StepContext<2>&, const WorldState<2>&, Workers&,
+                                     StepScratch<2>&);
+template void prepare_contacts<2, 16>(const StepContext<2>&, const WorldState<2>&, Workers&,
+                                      StepScratch<2>&);
+template void prepare_contacts<3, 1>(const StepContext<3>&, const WorldState<3>&, Workers&,
+                                     StepScratch<3>&);
+template void prepare_contacts<3, 4>(const StepContext<3>&, const WorldState<3>&, Workers&,
+                                     StepScratch<3>&);
+template void prepare_contacts<3, 8>(const StepContext<3>&, const WorldState<3>&, Workers&,
+                                     StepScratch<3>&);
+template void prepare_contacts<3, 16>(const StepContext<3>&, const WorldState<3>&, Workers&,
+                                      StepScratch<3>&);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,116 @@
+#include "solver/constraints/distance.hpp"
+#include "solver/constraints/revolute.hpp"
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+template <int D>
+static void warm_start_joint(const JointRow<D>& row, std::span<Motion<D>> motions) {
+  Motion<D> a = motions[row.body_a];
+  Motion<D> b = motions[row.body_b];
+  if (row.kind == JointKind::kDistance)
+    DistanceConstraint<D>::warm_start(row, a, b);
+  else
+    RevoluteConstraint<D>::warm_start(row, a, b);
+  write_back(row, a, b, motions);
+}
+
+template <int D>
+static void solve_joint(const StepContext<D>& context, Sweep sweep, JointRow<D>& row,
+                        std::span<Motion<D>> motions) {
+  Motion<D> a = motions[row.body_a];
+  Motion<D> b = motions[row.body_b];
+  if (row.kind == JointKind::kDistance)
+    DistanceConstraint<D>::solve(context, sweep, row, a, b);
+  else
+    RevoluteConstraint<D>::solve(context, sweep, row, a, b);
+  write_back(row, a, b, motions);
+}
+
+/// v += M^-1 J^T lambda with the impulses of the substep before: the solution of a world at rest is
+/// found again at once.
+///
+/// Reads the accumulated impulses; writes velocities. Colour after colour (for_each_by_color).
+template <int D, int W>
+void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const std::span<Motion<D>> motions = scratch.motions;
+  for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
+    warm_start_joint(scratch.joint_rows[static_cast<std::size_t>(i)], motions);
+  });
+  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
+    warm_start(contacts.blocks[static_cast<std::size_t>(i)], motions);
+  });
+}
+
+/// One sweep of sequential impulses: joints, then contacts, each colour after colour.
+///
+/// Reads masses, arms and deltas; writes velocities and accumulated impulses. Inside a colour no
+/// two constraints share a body that moves, so neither lanes nor threads change a bit; the order of
+/// the colours is that of the ids.
+template <int D, int W>
+void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& workers,
+                       StepScratch<D>& scratch) {
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const std::span<Motion<D>> motions = scratch.motions;
+  for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
+    solve_joint(context, sweep, scratch.joint_rows[static_cast<std::size_t>(i)], motions);
+  });
+  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
+    solve(context, sweep, contacts.blocks[static_cast<std::size_t>(i)], motions);
+  });
+}
+
+/// Reads the approach speeds of the tick's start; writes velocities and normal impulses, colour
+/// after colour.
+template <int D, int W>
+void apply_restitution(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const std::span<Motion<D>> motions = scratch.motions;
+  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
+    restitute(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
+  });
+}
+
+template <int D, int W>
+static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>& contacts) {
+  for (int lane = 0; lane < W; ++lane) {
+    const std::uint32_t index = block.contact[static_cast<std::size_t>(lane)];
+    if (index == kNone) continue;
+    Contact<D>& contact = contacts[index];
+    for (std::uint32_t p = 0; p < contact.point_count; ++p) {
+      contact.points[p].normal_impulse = block.points[p].normal_impulse.raw[lane];
+      for (int t = 0; t < Dim<D>::kTangents; ++t)
+        contact.points[p].tangent_impulse[t] = block.points[p].tangent_impulse[t].raw[lane];
+    }
+  }
+}
+
+/// Reads the blocks; writes the impulses of the new contacts, each of its own, for the next tick's
+/// warm start.
+template <int D, int W>
+void store_impulses(Workers& workers, StepScratch<D>& scratch) {
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  workers.parallel_for(static_cast<int>(contacts.blocks.size()), kBlockGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i)
+      store_block(contacts.blocks[static_cast<std::size_t>(i)], scratch.contacts);
+  });
+}
+
+template <int D, int W>
+struct Instantiate {
+  static constexpr auto kWarmStart = &warm_start_constraints<D, W>;
+  static constexpr auto kSolve = &solve_constraints<D, W>;
+  static constexpr auto kRestitution = &apply_restitution<D, W>;
+  static constexpr auto kStore = &store_impulses<D, W>;
+};
+template struct Instantiate<2, 1>;
+template struct Instantiate<2, 4>;
+template struct Instantiate<2, 8>;
+template struct Instantiate<2, 16>;
+template struct Instantiate<3, 1>;
+template struct Instantiate<3, 4>;
+template struct Instantiate<3, 8>;
+template struct Instantiate<3, 16>;
+
+}  // namespace cycloid::solver

@@ -1,0 +1,67 @@
+#pragma once
+
+#include "solver/step_context.hpp"
+#include "solver/step_scratch.hpp"
+
+namespace cycloid::solver {
+
+/// The stages of a step, in the order in which `step.cpp` calls them. Each reads and writes what
+/// its comment in stages/*.cpp says, and nothing else; docs/architecture.md has the table.
+
+template <int D>
+void find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                StepScratch<D>& scratch);
+template <int D>
+void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                   StepScratch<D>& scratch);
+template <int D>
+void color(const WorldState<D>& state, StepScratch<D>& scratch);
+template <int D>
+void prepare_bodies(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch);
+template <int D>
+void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
+                    StepScratch<D>& scratch);
+template <int D, int W>
+void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                      StepScratch<D>& scratch);
+
+template <int D>
+void integrate_velocities(const StepContext<D>& context, const WorldState<D>& state,
+                          Workers& workers, StepScratch<D>& scratch);
+template <int D, int W>
+void warm_start_constraints(Workers& workers, StepScratch<D>& scratch);
+template <int D, int W>
+void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& workers,
+                       StepScratch<D>& scratch);
+template <int D>
+void integrate_positions(const StepContext<D>& context, const WorldState<D>& state,
+                         Workers& workers, StepScratch<D>& scratch);
+
+template <int D, int W>
+void apply_restitution(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
+template <int D, int W>
+void store_impulses(Workers& workers, StepScratch<D>& scratch);
+/// The first body that would leave the bounds, or a fault with field kFaultNone.
+template <int D>
+Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch);
+template <int D>
+void finalize(StepScratch<D>& scratch, WorldState<D>& state);
+
+/// Ranges of this many bodies, pairs or blocks go to one thread at a time.
+inline constexpr int kBodyGrain = 256;
+inline constexpr int kPairGrain = 64;
+inline constexpr int kBlockGrain = 16;
+
+/// Runs `run(index)` for every constraint, colour after colour; inside a colour in parallel, the
+/// overflow one by one. The one place that knows why lanes and threads cannot change a bit: what
+/// runs at the same time shares no body that moves.
+template <class Colors, class Run>
+void for_each_by_color(const Colors& colors, Workers& workers, int grain, Run&& run) {
+  for (const Range& color : colors.colors)
+    workers.parallel_for(color.end - color.begin, grain, [&](Range range) {
+      for (int i = color.begin + range.begin; i < color.begin + range.end; ++i) run(i);
+    });
+  for (int i = colors.overflow.begin; i < colors.overflow.end; ++i) run(i);
+}
+
+}  // namespace cycloid::solver

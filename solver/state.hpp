@@ -1,0 +1,149 @@
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <type_traits>
+#include <vector>
+
+#include "solver/definitions.hpp"
+
+namespace cycloid::solver {
+
+/// Ends a linked list of shapes and marks an absent index.
+inline constexpr std::uint32_t kNone = 0xffffffffu;
+
+/// Why a world no longer steps. The same on every machine.
+struct Fault {
+  std::uint64_t tick = 0;   ///< The tick that could not be made.
+  BodyId body;              ///< index kNone where the fault is not of a body.
+  std::uint64_t field = 0;  ///< A FaultField.
+};
+
+const char* fault_field_name(std::uint64_t field);
+
+enum FaultField : std::uint64_t {
+  kFaultNone,
+  kFaultPosition,
+  kFaultRotation,
+  kFaultVelocity,
+  kFaultSpin,
+  kFaultContacts,  ///< More contacts than `limits.contacts`.
+};
+
+/// The records below are the state: flat, trivially copyable, without padding. Each lists its
+/// fields once, in `visit`, which encoding, decoding, digest and comparison all walk; a
+/// static_assert in visit.hpp fails when a field is left out.
+
+template <int D>
+struct Body {
+  std::uint32_t generation = 0;
+  BodyKind kind = BodyKind::kFree;
+  std::uint32_t fixed_rotation = 0;
+  std::uint32_t first_shape = kNone;
+  std::array<std::uint32_t, 2> tag{};
+  Vec<D> position;  ///< Centre of mass, world, m.
+  Rotation<D> rotation;
+  Vec<D> velocity;  ///< m/s.
+  Spin<D> spin;     ///< rad/s.
+  Vec<D> force;     ///< N, for the coming tick.
+  Spin<D> torque;   ///< N m.
+  float mass;       ///< kg; 0 for static and kinematic bodies.
+  float inverse_mass;
+  Inertia<D> inertia;          ///< Body frame.
+  Inertia<D> inverse_inertia;  ///< Body frame; 0 where rotation is fixed.
+  Vec<D> local_center;         ///< Centre of mass in the user's body frame, m.
+  float linear_damping;
+  float angular_damping;
+  float gravity_scale;
+};
+
+template <int D>
+struct Shape {
+  ShapeKind kind = ShapeKind::kFree;
+  std::uint32_t body = kNone;
+  std::uint32_t next = kNone;  ///< Next shape of the same body.
+  std::uint32_t ordinal = 0;   ///< Index within the body.
+  std::uint32_t material = 0;
+  Filter filter;
+  std::uint32_t vertex_count = 0;
+  std::uint32_t ghosts = 0;  ///< Segment: bit 0: vertices[2] precedes vertex 0, bit 1: [3] follows.
+  float radius = 0.0f;
+  float offset = 0.0f;
+  Vec<D> normal;                                   ///< Half-space.
+  std::array<Vec<D>, Dim<D>::kVertices> vertices;  ///< From the centre of mass, counter-clockwise.
+  std::array<Vec<D>, Dim<D>::kVertices> normals;   ///< Of the edge from vertex i to i + 1.
+};
+
+template <int D>
+struct ContactPoint {
+  std::uint32_t feature = 0;    ///< Persists while the same features of the two shapes touch.
+  float normal_impulse = 0.0f;  ///< Accumulated over the last substep, N s.
+  Vec<Dim<D>::kTangents> tangent_impulse;
+};
+
+/// A pair of shapes with at least one contact point; shape_a < shape_b.
+template <int D>
+struct Contact {
+  std::uint32_t shape_a = kNone;
+  std::uint32_t shape_b = kNone;
+  std::uint32_t touching = 0;
+  std::uint32_t point_count = 0;
+  std::array<ContactPoint<D>, Dim<D>::kManifoldPoints> points;
+};
+
+template <int D>
+struct Joint {
+  std::uint32_t generation = 0;
+  JointKind kind = JointKind::kFree;
+  std::uint32_t body_a = kNone;
+  std::uint32_t body_b = kNone;
+  Vec<D> anchor_a;  ///< From the centre of mass, body frame, m.
+  Vec<D> anchor_b;
+  float length;
+  float hertz;
+  float damping_ratio;
+  Rotation<D> reference;  ///< Rotation of b relative to a at creation.
+  std::uint32_t limit_enabled;
+  float lower_angle;
+  float upper_angle;
+  std::uint32_t motor_enabled;
+  float motor_speed;
+  float motor_torque_max;
+  std::uint32_t collide_connected;
+  Vec<D> impulse;  ///< Accumulated: of the point, or element 0 along the distance axis, N s.
+  float motor_impulse;
+  float lower_impulse;
+  float upper_impulse;
+};
+
+template <int D>
+struct WorldHeader {
+  std::uint64_t tick = 0;
+  Fault fault;
+  Vec<D> gravity = Vec<D>::zero();
+  float tick_s = 0.0f;
+  Tuning tuning;
+  Limits limits;
+};
+
+/// All that the next step depends on. Slots that are free keep only their generation; the free
+/// lists are stacks, so the next id given out is part of the state too.
+template <int D>
+struct WorldState {
+  WorldHeader<D> header;
+  std::vector<Material> materials;
+  std::vector<Body<D>> bodies;
+  std::vector<std::uint32_t> free_bodies;
+  std::vector<Shape<D>> shapes;
+  std::vector<std::uint32_t> free_shapes;
+  std::vector<Joint<D>> joints;
+  std::vector<std::uint32_t> free_joints;
+  std::vector<Contact<D>> contacts;  ///< Sorted by (shape_a, shape_b).
+  std::vector<std::uint32_t> registers;
+};
+
+static_assert(std::is_trivially_copyable_v<Body<2>> && std::is_trivially_copyable_v<Body<3>>);
+static_assert(std::is_trivially_copyable_v<Contact<2>> && std::is_trivially_copyable_v<Contact<3>>);
+static_assert(std::is_trivially_copyable_v<Joint<2>> && std::is_trivially_copyable_v<Shape<2>>);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,49 @@
+#pragma once
+
+#include "solver/constraints/softness.hpp"
+#include "solver/definitions.hpp"
+
+namespace cycloid::solver {
+
+/// Constants of one tick that every stage reads.
+template <int D>
+struct StepContext {
+  float tick_s;
+  float h;  ///< s, of one substep.
+  float inverse_h;
+  Vec<D> gravity;
+  Tuning tuning;
+  Softness contact;         ///< Between two movable bodies.
+  Softness contact_static;  ///< Against a body without mass: twice as stiff.
+  Softness joint;
+};
+
+/// Stiffness above a fraction of the substep rate turns into noise: contacts are held to an eighth
+/// of it and joints to a quarter (Catto, Solver2D).
+template <int D>
+StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuning& tuning) {
+  StepContext<D> context;
+  context.tick_s = tick_s;
+  context.h = tick_s / static_cast<float>(tuning.substeps);
+  context.inverse_h = static_cast<float>(tuning.substeps) / tick_s;
+  context.gravity = gravity;
+  context.tuning = tuning;
+  if (tuning.stabilisation == Stabilisation::kBaumgarte) {
+    context.contact = baumgarte_softness(tuning.baumgarte, context.h);
+    context.contact_static = context.contact;
+    context.joint = context.contact;
+    return context;
+  }
+  const float contact_hertz = min(tuning.contact_hertz, 0.125f * context.inverse_h);
+  const float joint_hertz = min(tuning.joint_hertz, 0.25f * context.inverse_h);
+  context.contact = spring_softness(contact_hertz, tuning.contact_damping_ratio, context.h);
+  context.contact_static =
+      spring_softness(2.0f * contact_hertz, tuning.contact_damping_ratio, context.h);
+  context.joint = spring_softness(joint_hertz, tuning.joint_damping_ratio, context.h);
+  return context;
+}
+
+/// Whether a sweep corrects positions (biased, soft) or only velocities (relax).
+enum class Sweep { kBiased, kRelax };
+
+}  // namespace cycloid::solver

@@ -1,0 +1,68 @@
+#pragma once
+
+#include <cstdint>
+#include <tuple>
+#include <vector>
+
+#include "solver/collision/bounds_tree.hpp"
+#include "solver/collision/manifold.hpp"
+#include "solver/constraints/contact.hpp"
+#include "solver/constraints/joint_row.hpp"
+#include "solver/motion.hpp"
+#include "solver/state.hpp"
+#include "solver/workers.hpp"
+
+namespace cycloid::solver {
+
+/// Two shapes whose boxes overlap, lower slot first.
+struct ShapePair {
+  std::uint32_t shape_a;
+  std::uint32_t shape_b;
+  std::uint64_t key() const { return (std::uint64_t{shape_a} << 32) | shape_b; }
+};
+
+/// Constraints by colour: no two of one colour share a body that moves. `order` lists colour after
+/// colour; the last range holds what fitted none, to be solved one after the other.
+struct Coloring {
+  std::vector<int> order;
+  std::vector<Range> colors;
+  Range overflow;
+};
+
+/// The contact blocks of one lane width. Those of a colour are independent of one another; the
+/// overflow has a block per contact (only lane 0 used), solved in order.
+template <int D, int W>
+struct ContactBlocks {
+  std::vector<ContactBlock<D, W>> blocks;
+  std::vector<Range> colors;
+  Range overflow;
+};
+
+/// Everything a step computes and throws away: nothing in here outlives a tick, so nothing in here
+/// is state. Kept between ticks only for its memory.
+template <int D>
+struct StepScratch {
+  std::vector<typename BoundsTree<D>::Leaf> leaves;
+  BoundsTree<D> tree;
+  std::vector<std::uint32_t> unbounded;       ///< Half-spaces.
+  std::vector<std::uint64_t> jointed_bodies;  ///< Sorted pairs that do not collide.
+  std::vector<std::vector<ShapePair>> found;  ///< By chunk of leaves.
+  std::vector<ShapePair> pairs;               ///< Sorted by key.
+  std::vector<Manifold<D>> pair_manifolds;    ///< Of each pair; empty where the shapes are apart.
+
+  std::vector<Contact<D>> contacts;    ///< Becomes the state's when the step commits.
+  std::vector<Manifold<D>> manifolds;  ///< Of each contact.
+
+  std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
+  std::vector<BodyMass<D>> masses;
+  std::vector<std::uint32_t> used_colors;  ///< Bit set by body slot.
+  std::vector<int> color_of;
+  std::vector<int> live_joints;
+  Coloring joint_coloring;  ///< `order` holds joint slots.
+  Coloring contact_coloring;
+  std::vector<JointRow<D>> joint_rows;  ///< In the order of joint_coloring.
+  std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>
+      contact_blocks;  ///< Only that of the chosen width is filled.
+};
+
+}  // namespace cycloid::solver

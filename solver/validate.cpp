@@ -1,0 +1,163 @@
+#include "solver/validate.hpp"
+
+namespace cycloid::solver {
+
+static Error invalid(const char* field, int index = -1) {
+  return {Code::kInvalid, field, index};
+}
+
+Error validate(const Tuning& t) {
+  if (t.substeps < 1 || t.substeps > 64) return invalid("substeps");
+  if (t.sweeps < 1 || t.sweeps > 1000) return invalid("sweeps");
+  if (t.relax_sweeps > 1000) return invalid("relax_sweeps");
+  if (t.stabilisation != Stabilisation::kBaumgarte && t.stabilisation != Stabilisation::kSoft)
+    return invalid("stabilisation");
+  if (!within(t.baumgarte, 0.0f, 2.0f)) return invalid("baumgarte");
+  if (!within(t.slop, 0.0f, 1.0f)) return invalid("slop");
+  if (!within(t.contact_hertz, 1.0e-3f, 1.0e5f)) return invalid("contact_hertz");
+  if (!within(t.contact_damping_ratio, 0.0f, 1.0e3f)) return invalid("contact_damping_ratio");
+  if (!within(t.joint_hertz, 1.0e-3f, 1.0e5f)) return invalid("joint_hertz");
+  if (!within(t.joint_damping_ratio, 0.0f, 1.0e3f)) return invalid("joint_damping_ratio");
+  if (!within(t.push_speed_max, 0.0f, kSpeedMax)) return invalid("push_speed_max");
+  if (!within(t.restitution_threshold, 0.0f, kSpeedMax)) return invalid("restitution_threshold");
+  if (!within(t.speculative_distance, 0.0f, 10.0f)) return invalid("speculative_distance");
+  return {};
+}
+
+Error validate(const Limits& limits) {
+  constexpr std::uint32_t kMax = 1u << 24;
+  if (limits.bodies > kMax) return invalid("limits.bodies");
+  if (limits.shapes > kMax) return invalid("limits.shapes");
+  if (limits.joints > kMax) return invalid("limits.joints");
+  if (limits.contacts > kMax) return invalid("limits.contacts");
+  if (limits.materials > kMax) return invalid("limits.materials");
+  if (limits.registers > kMax) return invalid("limits.registers");
+  return {};
+}
+
+Error validate(const Material& material, int index) {
+  if (!within(material.friction, 0.0f, 1.0e3f)) return invalid("friction", index);
+  if (!within(material.restitution, 0.0f, 1.0f)) return invalid("restitution", index);
+  return {};
+}
+
+template <int D>
+Error validate(const WorldDef<D>& def) {
+  if (!within(def.gravity, 1.0e4f)) return invalid("gravity");
+  if (!within(def.tick_s, 1.0e-5f, 1.0f)) return invalid("tick_s");
+  if (const Error error = validate(def.tuning); !error.ok()) return error;
+  if (const Error error = validate(def.limits); !error.ok()) return error;
+  if (def.materials.empty()) return invalid("materials");
+  if (def.materials.size() > def.limits.materials) return {Code::kCapacity, "limits.materials"};
+  for (std::size_t i = 0; i < def.materials.size(); ++i)
+    if (const Error error = validate(def.materials[i], static_cast<int>(i)); !error.ok())
+      return error;
+  return {};
+}
+
+template <int N>
+static bool is_unit(const Vec<N>& v) {
+  return within(dot(v, v), 0.998f, 1.002f);
+}
+
+template <int D>
+Error validate(const BodyDef<D>& def) {
+  if (def.kind < BodyKind::kStatic || def.kind > BodyKind::kParticle) return invalid("kind");
+  if (!within(def.position, kPositionMax)) return invalid("position");
+  if (!is_unit(def.rotation)) return invalid("rotation");
+  if (!within(def.velocity, kSpeedMax)) return invalid("velocity");
+  if (!within(def.spin, kSpinMax)) return invalid("spin");
+  const bool stated = def.mass != 0.0f || def.kind == BodyKind::kParticle;
+  if (stated && !within(def.mass, kMassMin, kMassMax)) return invalid("mass");
+  if (!within(def.linear_damping, 0.0f, 1.0e4f)) return invalid("linear_damping");
+  if (!within(def.angular_damping, 0.0f, 1.0e4f)) return invalid("angular_damping");
+  if (!within(def.gravity_scale, -1.0e3f, 1.0e3f)) return invalid("gravity_scale");
+  if (def.kind == BodyKind::kStatic && dot(def.velocity, def.velocity) != 0.0f)
+    return invalid("velocity");
+  return {};
+}
+
+template <int D>
+static Error validate_kind(const ShapeDef<D>& def, BodyKind body, int index) {
+  const bool is_static = body == BodyKind::kStatic;
+  switch (def.kind) {
+    case ShapeKind::kBall:
+      return {};
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kChain:
+      if (!is_static) return invalid("kind", index);
+      break;
+    case ShapeKind::kCapsule:
+    case ShapeKind::kPolygon:
+      break;
+    default:
+      return invalid("kind", index);
+  }
+  const bool planar_only = def.kind != ShapeKind::kHalfSpace;
+  if (planar_only && Dim<D>::kVertices < 8) return invalid("kind", index);
+  return {};
+}
+
+static bool point_count_fits(ShapeKind kind, std::size_t count) {
+  switch (kind) {
+    case ShapeKind::kBall:
+      return count <= 1;
+    case ShapeKind::kHalfSpace:
+      return count == 0;
+    case ShapeKind::kCapsule:
+      return count == 2;
+    case ShapeKind::kPolygon:
+      return count >= 3 && count <= 8;
+    default:
+      return count >= 2;
+  }
+}
+
+template <int D>
+Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int index) {
+  if (const Error error = validate_kind(def, body, index); !error.ok()) return error;
+  if (!point_count_fits(def.kind, def.points.size())) return invalid("points", index);
+  for (const Vec<D>& point : def.points)
+    if (!within(point, kSizeMax)) return invalid("points", index);
+  const bool round = def.kind == ShapeKind::kBall || def.kind == ShapeKind::kCapsule;
+  if (!within(def.radius, round ? kSizeMin : 0.0f, kSizeMax)) return invalid("radius", index);
+  if (def.kind == ShapeKind::kHalfSpace) {
+    if (!is_unit(def.normal)) return invalid("normal", index);
+    if (!within(def.offset, -kSizeMax, kSizeMax)) return invalid("offset", index);
+  }
+  if (!within(def.density, 0.0f, 1.0e9f)) return invalid("density", index);
+  if (def.material >= materials) return invalid("material", index);
+  return {};
+}
+
+template <int D>
+Error validate(const JointDef<D>& def) {
+  if (def.kind != JointKind::kDistance && def.kind != JointKind::kRevolute) return invalid("kind");
+  if (def.body_a == def.body_b) return invalid("body_b");
+  if (!within(def.anchor_a, kSizeMax)) return invalid("anchor_a");
+  if (!within(def.anchor_b, kSizeMax)) return invalid("anchor_b");
+  const bool distance = def.kind == JointKind::kDistance;
+  if (distance && !within(def.length, kSizeMin, kSizeMax)) return invalid("length");
+  if (!within(def.hertz, 0.0f, 1.0e5f)) return invalid("hertz");
+  if (!within(def.damping_ratio, 0.0f, 1.0e3f)) return invalid("damping_ratio");
+  // A limit and a motor act about the one axis of the plane; a ball joint has no such axis.
+  const bool has_axis = !distance && Dim<D>::kSpin == 1;
+  if (def.limit_enabled && !has_axis) return invalid("limit_enabled");
+  if (def.motor_enabled && !has_axis) return invalid("motor_enabled");
+  if (!within(def.lower_angle, -3.2f, 3.2f)) return invalid("lower_angle");
+  if (!within(def.upper_angle, def.lower_angle, 3.2f)) return invalid("upper_angle");
+  if (!within(def.motor_speed, -kSpinMax, kSpinMax)) return invalid("motor_speed");
+  if (!within(def.motor_torque_max, 0.0f, kForceMax)) return invalid("motor_torque_max");
+  return {};
+}
+
+template Error validate(const WorldDef<2>&);
+template Error validate(const WorldDef<3>&);
+template Error validate(const BodyDef<2>&);
+template Error validate(const BodyDef<3>&);
+template Error validate(const ShapeDef<2>&, BodyKind, std::size_t, int);
+template Error validate(const ShapeDef<3>&, BodyKind, std::size_t, int);
+template Error validate(const JointDef<2>&);
+template Error validate(const JointDef<3>&);
+
+}  // namespace cycloid::solver

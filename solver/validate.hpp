@@ -1,0 +1,50 @@
+#pragma once
+
+#include "solver/definitions.hpp"
+#include "solver/result.hpp"
+#include "solver/state.hpp"
+
+namespace cycloid::solver {
+
+/// Greatest magnitudes of a bounded world. Beyond them float32 has no useful precision left, and
+/// products of such values stay finite, so that the fault is found in the tick that makes it.
+inline constexpr float kPositionMax = 1.0e7f;  ///< m
+inline constexpr float kSpeedMax = 1.0e5f;     ///< m/s
+inline constexpr float kSpinMax = 1.0e5f;      ///< rad/s
+inline constexpr float kForceMax = 1.0e12f;    ///< N, N s, N m, N m s
+inline constexpr float kMassMax = 1.0e12f;     ///< kg
+inline constexpr float kMassMin = 1.0e-9f;     ///< kg
+inline constexpr float kSizeMin = 1.0e-4f;     ///< m: radii and edges
+inline constexpr float kSizeMax = 1.0e6f;      ///< m
+
+/// False for NaN too.
+inline bool within(float value, float lower, float upper) {
+  return value >= lower && value <= upper;
+}
+
+template <int N>
+bool within(const Vec<N>& vector, float bound) {
+  for (float value : vector.v)
+    if (!within(value, -bound, bound)) return false;
+  return true;
+}
+
+Error validate(const Tuning& tuning);
+Error validate(const Limits& limits);
+Error validate(const Material& material, int index);
+template <int D>
+Error validate(const WorldDef<D>& def);
+template <int D>
+Error validate(const BodyDef<D>& def);
+/// Range checks alone; convexity is found out when the shape is made (shapes.hpp).
+template <int D>
+Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int index);
+template <int D>
+Error validate(const JointDef<D>& def);
+
+/// A whole state that came from outside: every index, list, number and enumerator, so that stepping
+/// it reads and writes nothing out of bounds. kCorrupt with the name of the array.
+template <int D>
+Error validate(const WorldState<D>& state);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,163 @@
+#include "solver/validate.hpp"
+#include "solver/visit.hpp"
+
+namespace cycloid::solver {
+
+static Error corrupt(const char* field, std::size_t index) {
+  return {Code::kCorrupt, field, static_cast<int>(index)};
+}
+
+/// Whether every float of a record is finite and no larger than what `step` lets through.
+template <class R>
+static bool is_finite(const R& record) {
+  bool finite = true;
+  visit_words(record, [&](const auto& value) {
+    if constexpr (std::is_same_v<std::remove_cvref_t<decltype(value)>, float>)
+      finite = finite && within(value, -1.0e30f, 1.0e30f);
+  });
+  return finite;
+}
+
+/// A free list names each free slot once and nothing else.
+template <class R, class Kind>
+static bool is_free_list(const std::vector<std::uint32_t>& list, const std::vector<R>& slots,
+                         Kind free) {
+  std::vector<bool> listed(slots.size(), false);
+  for (const std::uint32_t index : list) {
+    if (index >= slots.size() || listed[index] || slots[index].kind != free) return false;
+    listed[index] = true;
+  }
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    if (slots[i].kind == free && !listed[i]) return false;
+  return true;
+}
+
+template <int D>
+static Error validate_bodies(const WorldState<D>& state) {
+  std::vector<bool> owned(state.shapes.size(), false);
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    const Body<D>& body = state.bodies[i];
+    if (body.kind > BodyKind::kParticle || !is_finite(body)) return corrupt("body", i);
+    if (!within(body.position, kPositionMax)) return corrupt("body", i);
+    const bool moves = body.kind == BodyKind::kDynamic || body.kind == BodyKind::kParticle;
+    if (moves != (body.inverse_mass > 0.0f)) return corrupt("body", i);
+    if (body.kind == BodyKind::kFree) continue;
+    if (!within(dot(body.rotation, body.rotation), 0.99f, 1.01f)) return corrupt("body", i);
+    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
+      // `owned` also ends a list that runs in a circle.
+      if (s >= state.shapes.size() || owned[s]) return corrupt("body", i);
+      if (state.shapes[s].kind == ShapeKind::kFree || state.shapes[s].body != i)
+        return corrupt("body", i);
+      owned[s] = true;
+    }
+  }
+  for (std::size_t i = 0; i < state.shapes.size(); ++i)
+    if (owned[i] != (state.shapes[i].kind != ShapeKind::kFree)) return corrupt("shape", i);
+  return {};
+}
+
+template <int D>
+static bool vertices_fit(const Shape<D>& shape) {
+  const std::uint32_t n = shape.vertex_count;
+  switch (shape.kind) {
+    case ShapeKind::kFree:
+      return true;
+    case ShapeKind::kBall:
+      return n == 1;
+    case ShapeKind::kHalfSpace:
+      return n == 0;
+    case ShapeKind::kCapsule:
+    case ShapeKind::kSegment:
+      return n == 2 && Dim<D>::kVertices >= 4;
+    case ShapeKind::kPolygon:
+      return n >= 3 && n <= Dim<D>::kVertices;
+    default:
+      return false;
+  }
+}
+
+template <int D>
+static Error validate_shapes(const WorldState<D>& state) {
+  for (std::size_t i = 0; i < state.shapes.size(); ++i) {
+    const Shape<D>& shape = state.shapes[i];
+    if (!is_finite(shape) || !vertices_fit(shape)) return corrupt("shape", i);
+    if (shape.kind != ShapeKind::kFree && shape.material >= state.materials.size())
+      return corrupt("shape", i);
+  }
+  return {};
+}
+
+template <int D>
+static Error validate_joints(const WorldState<D>& state) {
+  for (std::size_t i = 0; i < state.joints.size(); ++i) {
+    const Joint<D>& joint = state.joints[i];
+    if (joint.kind > JointKind::kRevolute || !is_finite(joint)) return corrupt("joint", i);
+    if (joint.kind == JointKind::kFree) continue;
+    for (const std::uint32_t body : {joint.body_a, joint.body_b})
+      if (body >= state.bodies.size() || state.bodies[body].kind == BodyKind::kFree)
+        return corrupt("joint", i);
+    if (joint.body_a == joint.body_b) return corrupt("joint", i);
+  }
+  return {};
+}
+
+template <int D>
+static Error validate_contacts(const WorldState<D>& state) {
+  for (std::size_t i = 0; i < state.contacts.size(); ++i) {
+    const Contact<D>& contact = state.contacts[i];
+    if (!is_finite(contact)) return corrupt("contact", i);
+    if (contact.point_count > Dim<D>::kManifoldPoints || contact.touching > 1)
+      return corrupt("contact", i);
+    if (contact.shape_a >= contact.shape_b || contact.shape_b >= state.shapes.size())
+      return corrupt("contact", i);
+    for (const std::uint32_t shape : {contact.shape_a, contact.shape_b})
+      if (state.shapes[shape].kind == ShapeKind::kFree) return corrupt("contact", i);
+    if (i == 0) continue;
+    const Contact<D>& before = state.contacts[i - 1];
+    const bool ordered = before.shape_a < contact.shape_a ||
+                         (before.shape_a == contact.shape_a && before.shape_b < contact.shape_b);
+    if (!ordered) return corrupt("contact", i);
+  }
+  return {};
+}
+
+template <int D>
+static Error validate_header(const WorldState<D>& state) {
+  const WorldHeader<D>& header = state.header;
+  if (!within(header.gravity, 1.0e4f)) return corrupt("gravity", 0);
+  if (!within(header.tick_s, 1.0e-5f, 1.0f)) return corrupt("tick_s", 0);
+  if (!validate(header.tuning).ok()) return corrupt("tuning", 0);
+  if (!validate(header.limits).ok()) return corrupt("limits", 0);
+  if (header.fault.field > kFaultContacts) return corrupt("fault", 0);
+  const Limits& limits = header.limits;
+  if (state.bodies.size() > limits.bodies) return corrupt("limits.bodies", 0);
+  if (state.shapes.size() > limits.shapes) return corrupt("limits.shapes", 0);
+  if (state.joints.size() > limits.joints) return corrupt("limits.joints", 0);
+  if (state.contacts.size() > limits.contacts) return corrupt("limits.contacts", 0);
+  if (state.materials.size() > limits.materials) return corrupt("limits.materials", 0);
+  if (state.registers.size() > limits.registers) return corrupt("limits.registers", 0);
+  for (std::size_t i = 0; i < state.materials.size(); ++i)
+    if (!validate(state.materials[i], static_cast<int>(i)).ok()) return corrupt("material", i);
+  return {};
+}
+
+template <int D>
+Error validate(const WorldState<D>& state) {
+  if (const Error error = validate_header(state); !error.ok()) return error;
+  if (const Error error = validate_bodies(state); !error.ok()) return error;
+  if (const Error error = validate_shapes(state); !error.ok()) return error;
+  if (const Error error = validate_joints(state); !error.ok()) return error;
+  if (const Error error = validate_contacts(state); !error.ok()) return error;
+  if (!is_free_list(state.free_bodies, state.bodies, BodyKind::kFree))
+    return corrupt("free body", 0);
+  if (!is_free_list(state.free_shapes, state.shapes, ShapeKind::kFree))
+    return corrupt("free shape", 0);
+  if (!is_free_list(state.free_joints, state.joints, JointKind::kFree))
+    return corrupt("free joint", 0);
+  return {};
+}
+
+template Error validate(const WorldState<2>&);
+template Error validate(const WorldState<3>&);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,221 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solver/state.hpp"
+
+namespace cycloid::solver {
+
+/// One list of the fields of each record, by name: encoding, decoding, digest and comparison walk
+/// these and nothing else. `R` is a record or a const record; `f` is called as f(name, field).
+
+template <class R, class F>
+constexpr void visit_fields(R& r, F&& f, const Material*) {
+  f("friction", r.friction);
+  f("restitution", r.restitution);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Body<D>*) {
+  f("generation", r.generation);
+  f("kind", r.kind);
+  f("fixed_rotation", r.fixed_rotation);
+  f("first_shape", r.first_shape);
+  f("tag", r.tag);
+  f("position", r.position);
+  f("rotation", r.rotation);
+  f("velocity", r.velocity);
+  f("spin", r.spin);
+  f("force", r.force);
+  f("torque", r.torque);
+  f("mass", r.mass);
+  f("inverse_mass", r.inverse_mass);
+  f("inertia", r.inertia);
+  f("inverse_inertia", r.inverse_inertia);
+  f("local_center", r.local_center);
+  f("linear_damping", r.linear_damping);
+  f("angular_damping", r.angular_damping);
+  f("gravity_scale", r.gravity_scale);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Shape<D>*) {
+  f("kind", r.kind);
+  f("body", r.body);
+  f("next", r.next);
+  f("ordinal", r.ordinal);
+  f("material", r.material);
+  f("filter.category", r.filter.category);
+  f("filter.mask", r.filter.mask);
+  f("filter.group", r.filter.group);
+  f("vertex_count", r.vertex_count);
+  f("ghosts", r.ghosts);
+  f("radius", r.radius);
+  f("offset", r.offset);
+  f("normal", r.normal);
+  f("vertices", r.vertices);
+  f("normals", r.normals);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const ContactPoint<D>*) {
+  f("feature", r.feature);
+  f("normal_impulse", r.normal_impulse);
+  f("tangent_impulse", r.tangent_impulse);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Contact<D>*) {
+  f("shape_a", r.shape_a);
+  f("shape_b", r.shape_b);
+  f("touching", r.touching);
+  f("point_count", r.point_count);
+  f("points", r.points);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
+  f("generation", r.generation);
+  f("kind", r.kind);
+  f("body_a", r.body_a);
+  f("body_b", r.body_b);
+  f("anchor_a", r.anchor_a);
+  f("anchor_b", r.anchor_b);
+  f("length", r.length);
+  f("hertz", r.hertz);
+  f("damping_ratio", r.damping_ratio);
+  f("reference", r.reference);
+  f("limit_enabled", r.limit_enabled);
+  f("lower_angle", r.lower_angle);
+  f("upper_angle", r.upper_angle);
+  f("motor_enabled", r.motor_enabled);
+  f("motor_speed", r.motor_speed);
+  f("motor_torque_max", r.motor_torque_max);
+  f("collide_connected", r.collide_connected);
+  f("impulse", r.impulse);
+  f("motor_impulse", r.motor_impulse);
+  f("lower_impulse", r.lower_impulse);
+  f("upper_impulse", r.upper_impulse);
+}
+
+template <class R, class F>
+constexpr void visit_fields(R& r, F&& f, const Tuning*) {
+  f("tuning.substeps", r.substeps);
+  f("tuning.sweeps", r.sweeps);
+  f("tuning.relax_sweeps", r.relax_sweeps);
+  f("tuning.stabilisation", r.stabilisation);
+  f("tuning.baumgarte", r.baumgarte);
+  f("tuning.slop", r.slop);
+  f("tuning.contact_hertz", r.contact_hertz);
+  f("tuning.contact_damping_ratio", r.contact_damping_ratio);
+  f("tuning.joint_hertz", r.joint_hertz);
+  f("tuning.joint_damping_ratio", r.joint_damping_ratio);
+  f("tuning.push_speed_max", r.push_speed_max);
+  f("tuning.restitution_threshold", r.restitution_threshold);
+  f("tuning.speculative_distance", r.speculative_distance);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const WorldHeader<D>*) {
+  f("tick", r.tick);
+  f("fault.tick", r.fault.tick);
+  f("fault.body.index", r.fault.body.index);
+  f("fault.body.generation", r.fault.body.generation);
+  f("fault.field", r.fault.field);
+  f("gravity", r.gravity);
+  f("tick_s", r.tick_s);
+  f("tuning", r.tuning);
+  f("limits.bodies", r.limits.bodies);
+  f("limits.shapes", r.limits.shapes);
+  f("limits.joints", r.limits.joints);
+  f("limits.contacts", r.limits.contacts);
+  f("limits.materials", r.limits.materials);
+  f("limits.registers", r.limits.registers);
+}
+
+template <class R, class F>
+constexpr void visit(R& record, F&& f) {
+  visit_fields(record, f, static_cast<const std::remove_const_t<R>*>(nullptr));
+}
+
+/// The arrays of a state in canonical order: f(object name, array).
+template <class S, class F>
+void visit_arrays(S& state, F&& f) {
+  f("material", state.materials);
+  f("body", state.bodies);
+  f("free body", state.free_bodies);
+  f("shape", state.shapes);
+  f("free shape", state.free_shapes);
+  f("joint", state.joints);
+  f("free joint", state.free_joints);
+  f("contact", state.contacts);
+  f("register", state.registers);
+}
+
+template <class T>
+inline constexpr bool kIsWord = std::is_arithmetic_v<T> || std::is_enum_v<T>;
+
+/// Calls word(value) for each number of a field, innermost last; `field` is a number, a vector, an
+/// array, or a record with fields of its own.
+template <class F>
+struct WordWalk {
+  F& word;
+
+  constexpr void operator()(const char*, auto& field) { walk(field); }
+
+  template <class T>
+  requires kIsWord<std::remove_const_t<T>>
+  constexpr void walk(T& value) { word(value); }
+  template <class T>
+  requires requires(T& t) { t.v; }
+  constexpr void walk(T& vector) {
+    for (auto& value : vector.v) word(value);
+  }
+  template <class T>
+  requires requires(T& t) { t.m; }
+  constexpr void walk(T& inertia) {
+    for (auto& value : inertia.m) word(value);
+  }
+  template <class T>
+  requires requires(T& t) { t.size(); }
+  constexpr void walk(T& array) {
+    for (auto& element : array) walk(element);
+  }
+  template <class T>
+  requires requires(T& t) {
+    visit_fields(
+        t, [](auto&&...) {}, static_cast<const std::remove_const_t<T>*>(nullptr));
+  }
+  constexpr void walk(T& record) { visit(record, *this); }
+};
+
+template <class R, class F>
+constexpr void visit_words(R& record, F&& word) {
+  WordWalk<std::remove_reference_t<F>> walk{word};
+  walk.walk(record);
+}
+
+/// Bytes of all numbers that `visit` reaches in a record.
+template <class R>
+constexpr std::size_t visited_bytes() {
+  R record{};
+  std::size_t bytes = 0;
+  visit_words(record, [&](auto& value) { bytes += sizeof value; });
+  return bytes;
+}
+
+// A field that `visit` forgets would neither be saved nor hashed: a silent divergence. These fail
+// when a record has bytes that no listed field covers, but for the padding at its end; the planar
+// records have none, so no field hides there either.
+template <class R>
+inline constexpr bool kVisitsEverything = sizeof(R) == (visited_bytes<R>() + alignof(R) - 1) /
+                                                           alignof(R) * alignof(R);
+static_assert(visited_bytes<WorldHeader<2>>() == sizeof(WorldHeader<2>));
+static_assert(kVisitsEverything<Material>);
+static_assert(kVisitsEverything<Body<2>> && kVisitsEverything<Body<3>>);
+static_assert(kVisitsEverything<Shape<2>> && kVisitsEverything<Shape<3>>);
+static_assert(kVisitsEverything<Contact<2>> && kVisitsEverything<Contact<3>>);
+static_assert(kVisitsEverything<Joint<2>> && kVisitsEverything<Joint<3>>);
+static_assert(kVisitsEverything<WorldHeader<2>> && kVisitsEverything<WorldHeader<3>>);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,59 @@
+#pragma once
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+namespace cycloid::solver {
+
+/// Indices [begin, end).
+struct Range {
+  int begin = 0;
+  int end = 0;
+};
+
+/// A fixed pool that runs ranges. The only thread-aware code of the solver.
+///
+/// The split into ranges of `grain` depends on the work alone, never on the number of threads, and
+/// every range writes what no other reads or writes; so which thread runs a range cannot be seen.
+class Workers {
+ public:
+  /// @pre 1 <= count <= 64; the calling thread is one of them.
+  explicit Workers(int count);
+  ~Workers();
+  Workers(const Workers&) = delete;
+  Workers& operator=(const Workers&) = delete;
+
+  int count() const { return static_cast<int>(threads_.size()) + 1; }
+
+  /// Calls run(Range) for consecutive ranges that cover [0, size); returns when all are done.
+  template <class Run>
+  void parallel_for(int size, int grain, Run&& run) {
+    if (size <= grain || threads_.empty()) {
+      for (int begin = 0; begin < size; begin += grain)
+        run(Range{begin, begin + grain < size ? begin + grain : size});
+      return;
+    }
+    dispatch(size, grain, &run,
+             [](void* context, Range range) { (*static_cast<Run*>(context))(range); });
+  }
+
+ private:
+  using Call = void (*)(void*, Range);
+  void dispatch(int size, int grain, void* context, Call call);
+  void run_chunks();
+  void thread_main();
+
+  std::vector<std::thread> threads_;
+  std::atomic<std::uint32_t> generation_{0};
+  std::atomic<int> next_{0};
+  std::atomic<int> busy_{0};
+  std::atomic<bool> stop_{false};
+  int size_ = 0;
+  int grain_ = 1;
+  void* context_ = nullptr;
+  Call call_ = nullptr;
+};
+
+}  // namespace cycloid::solver

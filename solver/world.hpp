@@ -1,0 +1,180 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "solver/definitions.hpp"
+#include "solver/result.hpp"
+#include "solver/state.hpp"
+
+namespace cycloid::solver {
+
+class Workers;
+template <int D>
+struct StepScratch;
+
+/// Two shapes began or ceased to touch in the last step.
+struct ContactEvent {
+  BodyId body_a;
+  BodyId body_b;
+  std::uint32_t shape_a = 0;  ///< Index of the shape within its body.
+  std::uint32_t shape_b = 0;
+  bool began = false;
+  friend bool operator==(const ContactEvent&, const ContactEvent&) = default;
+};
+
+/// What the last step did; not part of the state.
+struct Statistics {
+  std::uint32_t bodies = 0;
+  std::uint32_t pairs = 0;     ///< Pairs whose bounds overlap.
+  std::uint32_t contacts = 0;  ///< Pairs with at least one contact point.
+  std::uint32_t colors = 0;
+  std::uint32_t rows_per_sweep = 0;
+  std::uint64_t rows = 0;  ///< Rows solved in the step, all sweeps together.
+};
+
+/// A body as a user sees it: the pose of its frame, not of its centre of mass.
+template <int D>
+struct BodyView {
+  BodyId id;
+  BodyKind kind = BodyKind::kFree;
+  Vec<D> position = Vec<D>::zero();  ///< m, world.
+  Rotation<D> rotation = identity_rotation<D>();
+  Vec<D> velocity = Vec<D>::zero();  ///< Of the centre of mass, m/s.
+  Spin<D> spin = Spin<D>::zero();
+  float mass = 0.0f;
+  std::uint64_t tag = 0;
+};
+
+/// A rigid-body world: a pure function of its definition and of the calls made on it.
+///
+/// SI units (m, kg, s, rad); world frame unless a name says otherwise. The same definition and
+/// the same calls in the same order give the same bits on every supported target; worker count
+/// and lane width are invisible. docs/determinism.md says how, and which test proves it. Calls
+/// that fail return an `Error` that names the field, and have changed nothing. Not thread-safe.
+template <int D>
+class World {
+ public:
+  /// Fails with kInvalid or kCapacity on a bad definition, and with field "floating_point_mode"
+  /// where the thread rounds other than to nearest or flushes subnormals.
+  static Result<World> create(const WorldDef<D>& def);
+  World(World&&) noexcept;
+  World& operator=(World&&) noexcept;
+  ~World();
+
+  /// How many threads take part in a step, this one included: 1 to 64. Changes no bit.
+  Error set_workers(int workers);
+  /// How many contacts one instruction solves: 1, 4, 8 or 16. Changes no bit.
+  Error set_lanes(int lanes);
+
+  /// Advances one tick: `tuning.substeps` substeps of tick_s / substeps.
+  ///
+  /// Forces and torques apply for this tick and are cleared. When a value would leave the finite,
+  /// bounded range, nothing is committed: the world keeps the state of the tick before, enters the
+  /// fault state (`fault()`), and this and every later call returns kFaulted.
+  Error step();
+
+  Result<BodyId> create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> shapes);
+  /// Also removes the joints of the body; its contacts end with the next step.
+  Error destroy_body(BodyId id);
+  Result<JointId> create_joint(const JointDef<D>& def);
+  Error destroy_joint(JointId id);
+
+  Error apply_force(BodyId id, const Vec<D>& force_n);  ///< At the centre of mass.
+  Error apply_torque(BodyId id, const Spin<D>& torque_n_m);
+  Error apply_impulse(BodyId id, const Vec<D>& impulse_n_s);
+  Error apply_angular_impulse(BodyId id, const Spin<D>& impulse_n_m_s);
+  Error set_velocity(BodyId id, const Vec<D>& velocity, const Spin<D>& spin);
+  Error set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& rotation);
+  Error set_gravity(const Vec<D>& gravity);
+  Error set_gravity_scale(BodyId id, float scale);
+  Error set_damping(BodyId id, float linear, float angular);
+  Error set_mass(BodyId id, float mass_kg);  ///< Scales the inertia with it.
+  Error set_material(std::uint32_t material, const Material& values);
+  Error set_filter(BodyId id, std::uint32_t shape, const Filter& filter);
+  Error set_motor(JointId id, bool enabled, float speed, float torque_max);
+  Error set_limits(JointId id, bool enabled, float lower_angle, float upper_angle);
+  Error set_spring(JointId id, float length, float hertz, float damping_ratio);
+  Error set_tuning(const Tuning& tuning);
+
+  /// Words of the host that belong to the state: saved, encoded and hashed with it. What a host
+  /// decides from tick to tick (the last buttons of a seat, a spawn queue) lives here, or a
+  /// restored world would go another way.
+  std::span<const std::uint32_t> registers() const { return state_.registers; }
+  Error resize_registers(std::uint32_t count);
+  Error set_register(std::uint32_t index, std::uint32_t value);
+
+  std::uint64_t tick() const { return state_.header.tick; }
+  float tick_s() const { return state_.header.tick_s; }
+  const Tuning& tuning() const { return state_.header.tuning; }
+  std::optional<Fault> fault() const;
+
+  bool contains(BodyId id) const;
+  std::uint32_t body_count() const;
+  Result<BodyView<D>> body(BodyId id) const;
+  /// Live bodies in the order of their slots.
+  std::vector<BodyView<D>> bodies() const;
+  /// Angle of b relative to a since creation, rad in (-pi, pi]. 2D revolute joints.
+  Result<float> joint_angle(JointId id) const;
+  /// Distance between the two anchors, m.
+  Result<float> joint_separation(JointId id) const;
+
+  /// Of the last step: first all that ended, then all that began, each in the order of the shapes'
+  /// slots.
+  std::span<const ContactEvent> contact_events() const { return events_; }
+  const Statistics& statistics() const { return statistics_; }
+
+  /// 64 bits over all that the future depends on: XXH3 of the canonical encoding with -0 and every
+  /// NaN made one. Unequal digests prove unequal worlds.
+  std::uint64_t digest() const;
+
+  /// The whole state; a copy of flat arrays. `restore` brings back every bit.
+  const WorldState<D>& state() const { return state_; }
+  void save(WorldState<D>& into) const { into = state_; }
+  /// @pre `from` was saved from a world of this dimension. Events and statistics are cleared.
+  void restore(const WorldState<D>& from);
+
+  /// The exact state as little-endian bytes, independent of layout and platform.
+  void encode(std::vector<std::byte>& into) const;
+  /// Replaces the state. kCorrupt, and nothing has changed, unless the bytes are such an encoding:
+  /// sizes are checked before anything is allocated, and every index, number and list is verified.
+  Error decode(std::span<const std::byte> bytes);
+
+ private:
+  World();
+  Error check(BodyId id) const;
+  Error check(JointId id) const;
+
+  WorldState<D> state_;
+  std::vector<ContactEvent> events_;
+  std::vector<ContactEvent> ended_;  ///< By destroy_body since the last step; reported by the next.
+  Statistics statistics_;
+  int lanes_ = 4;
+  std::unique_ptr<Workers> workers_;
+  std::unique_ptr<StepScratch<D>> scratch_;
+};
+
+/// One value that differs between two states.
+struct Difference {
+  std::string object;   ///< "body 3", "joint 0", "contact 7", "shape 2", "world", ...
+  std::string field;    ///< "velocity[1]"
+  std::string value_a;  ///< Decimal, and the bits in hexadecimal.
+  std::string value_b;
+};
+
+/// The first `limit` differing fields of two states, in canonical order; empty when equal to the
+/// bit.
+template <int D>
+std::vector<Difference> differences(const WorldState<D>& a, const WorldState<D>& b,
+                                    std::size_t limit);
+
+/// Names, for a digest and a handshake, the arithmetic of this solver: equal versions give equal
+/// bits. Raised by every commit that re-mints goldens.
+inline constexpr std::uint32_t kSolverVersion = 1;
+
+}  // namespace cycloid::solver

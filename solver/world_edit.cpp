@@ -1,0 +1,210 @@
+#include <algorithm>
+
+#include "solver/events.hpp"
+#include "solver/mass.hpp"
+#include "solver/shapes.hpp"
+#include "solver/step_scratch.hpp"
+#include "solver/validate.hpp"
+#include "solver/workers.hpp"
+#include "solver/world.hpp"
+
+namespace cycloid::solver {
+
+/// The slot that the next record takes: the last freed, else a new one. Fails at the limit.
+template <class Record>
+static bool has_room(const std::vector<Record>& slots, const std::vector<std::uint32_t>& free,
+                     std::size_t wanted, std::uint32_t limit) {
+  return slots.size() - free.size() + wanted <= limit;
+}
+
+template <class Record>
+static std::uint32_t take_slot(std::vector<Record>& slots, std::vector<std::uint32_t>& free) {
+  if (free.empty()) {
+    slots.push_back(Record{});
+    return static_cast<std::uint32_t>(slots.size() - 1);
+  }
+  const std::uint32_t index = free.back();
+  free.pop_back();
+  return index;
+}
+
+template <int D>
+static bool is_movable(BodyKind kind) {
+  return kind == BodyKind::kDynamic || kind == BodyKind::kParticle;
+}
+
+/// Sets mass, inertia and centre of a body; kInvalid "mass" where nothing gives it any.
+template <int D>
+static Error set_mass_properties(const BodyDef<D>& def, std::span<const ShapeDef<D>> defs,
+                                 const std::vector<Shape<D>>& shapes,
+                                 const std::vector<int>& def_of, Body<D>& body) {
+  body.local_center = Vec<D>::zero();
+  if (!is_movable<D>(def.kind)) return {};
+  MassProperties<D> properties;
+  // A stated mass is spread over the shapes by their volume where no density says otherwise.
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    add_mass(shapes[i], defs[static_cast<std::size_t>(def_of[i])].density, properties);
+  const bool stated = def.mass != 0.0f;
+  if (!stated && !within(properties.mass, kMassMin, kMassMax)) return {Code::kInvalid, "mass"};
+  body.mass = stated ? def.mass : properties.mass;
+  body.inverse_mass = 1.0f / body.mass;
+  if (!within(properties.mass, kMassMin, kMassMax)) return {};
+  body.local_center = (1.0f / properties.mass) * properties.first;
+  if (def.kind == BodyKind::kParticle) return {};
+  body.inertia = central_inertia(properties);
+  for (float& moment : body.inertia.m) moment *= body.mass / properties.mass;
+  if (!def.fixed_rotation) body.inverse_inertia = inverse(body.inertia);
+  return {};
+}
+
+template <int D>
+static Body<D> body_from(const BodyDef<D>& def) {
+  Body<D> body{};
+  body.kind = def.kind;
+  body.fixed_rotation = def.fixed_rotation || def.kind == BodyKind::kParticle ? 1 : 0;
+  body.first_shape = kNone;
+  body.tag = {static_cast<std::uint32_t>(def.tag), static_cast<std::uint32_t>(def.tag >> 32)};
+  body.rotation = normalized_or(def.rotation, identity_rotation<D>());
+  body.velocity = def.velocity;
+  body.spin = body.fixed_rotation != 0 ? Spin<D>::zero() : def.spin;
+  body.linear_damping = def.linear_damping;
+  body.angular_damping = def.angular_damping;
+  body.gravity_scale = def.gravity_scale;
+  return body;
+}
+
+template <int D>
+Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> defs) {
+  if (const Error error = validate(def); !error.ok()) return error;
+  std::vector<Shape<D>> shapes;
+  std::vector<int> def_of;
+  for (int i = 0; i < static_cast<int>(defs.size()); ++i) {
+    const ShapeDef<D>& shape = defs[static_cast<std::size_t>(i)];
+    if (const Error error = validate(shape, def.kind, state_.materials.size(), i); !error.ok())
+      return error;
+    if (const Error error = append_shapes(shape, i, shapes); !error.ok()) return error;
+    def_of.resize(shapes.size(), i);
+  }
+  Body<D> body = body_from(def);
+  if (const Error error = set_mass_properties(def, defs, shapes, def_of, body); !error.ok())
+    return error;
+  if (!has_room(state_.bodies, state_.free_bodies, 1, state_.header.limits.bodies))
+    return Error{Code::kCapacity, "limits.bodies"};
+  if (!has_room(state_.shapes, state_.free_shapes, shapes.size(), state_.header.limits.shapes))
+    return Error{Code::kCapacity, "limits.shapes"};
+
+  const std::uint32_t index = take_slot(state_.bodies, state_.free_bodies);
+  body.generation = state_.bodies[index].generation;
+  body.position = def.position + rotate(body.rotation, body.local_center);
+  // Slots are taken in the order of the shapes and linked back to front.
+  std::vector<std::uint32_t> slots;
+  for (std::size_t i = 0; i < shapes.size(); ++i)
+    slots.push_back(take_slot(state_.shapes, state_.free_shapes));
+  for (std::size_t i = shapes.size(); i-- > 0;) {
+    Shape<D>& shape = state_.shapes[slots[i]];
+    shape = shapes[i];
+    shift_shape(body.local_center, shape);
+    shape.body = index;
+    shape.ordinal = static_cast<std::uint32_t>(i);
+    shape.next = body.first_shape;
+    body.first_shape = slots[i];
+  }
+  state_.bodies[index] = body;
+  return BodyId{index, body.generation};
+}
+
+template <int D>
+Error World<D>::destroy_body(BodyId id) {
+  if (const Error error = check(id); !error.ok()) return error;
+  for (std::uint32_t i = 0; i < state_.joints.size(); ++i) {
+    const Joint<D>& joint = state_.joints[i];
+    if (joint.kind == JointKind::kFree) continue;
+    if (joint.body_a == id.index || joint.body_b == id.index)
+      if (const Error error = destroy_joint({i, joint.generation}); !error.ok()) return error;
+  }
+  const auto is_of_body = [&](const Contact<D>& contact) {
+    return state_.shapes[contact.shape_a].body == id.index ||
+           state_.shapes[contact.shape_b].body == id.index;
+  };
+  for (const Contact<D>& contact : state_.contacts)
+    if (contact.touching != 0 && is_of_body(contact))
+      ended_.push_back(contact_event(state_, contact, false));
+  std::erase_if(state_.contacts, is_of_body);
+  for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone;) {
+    const std::uint32_t next = state_.shapes[s].next;
+    state_.shapes[s] = Shape<D>{};
+    state_.free_shapes.push_back(s);
+    s = next;
+  }
+  state_.bodies[id.index] = Body<D>{};
+  state_.bodies[id.index].generation = id.generation + 1;
+  state_.free_bodies.push_back(id.index);
+  return {};
+}
+
+template <int D>
+static Vec<D> anchor_from(const Body<D>& body, const Vec<D>& anchor) {
+  return anchor - body.local_center;
+}
+
+/// b relative to a: a^-1 b.
+static Rotation<2> relative(const Rotation<2>& a, const Rotation<2>& b) {
+  return compose(Rotation<2>{{a[0], -a[1]}}, b);
+}
+static Rotation<3> relative(const Rotation<3>& a, const Rotation<3>& b) {
+  return compose(Rotation<3>{{-a[0], -a[1], -a[2], a[3]}}, b);
+}
+
+template <int D>
+Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
+  if (!contains(def.body_a)) return Error{Code::kUnknownId, "body_a"};
+  if (!contains(def.body_b)) return Error{Code::kUnknownId, "body_b"};
+  if (const Error error = validate(def); !error.ok()) return error;
+  const Body<D>& a = state_.bodies[def.body_a.index];
+  const Body<D>& b = state_.bodies[def.body_b.index];
+  if (a.inverse_mass == 0.0f && b.inverse_mass == 0.0f) return Error{Code::kInvalid, "body_b"};
+  if (!has_room(state_.joints, state_.free_joints, 1, state_.header.limits.joints))
+    return Error{Code::kCapacity, "limits.joints"};
+
+  const std::uint32_t index = take_slot(state_.joints, state_.free_joints);
+  Joint<D> joint{};
+  joint.generation = state_.joints[index].generation;
+  joint.kind = def.kind;
+  joint.body_a = def.body_a.index;
+  joint.body_b = def.body_b.index;
+  joint.anchor_a = anchor_from(a, def.anchor_a);
+  joint.anchor_b = anchor_from(b, def.anchor_b);
+  joint.length = def.length;
+  joint.hertz = def.hertz;
+  joint.damping_ratio = def.damping_ratio;
+  joint.reference = relative(a.rotation, b.rotation);
+  joint.limit_enabled = def.limit_enabled ? 1 : 0;
+  joint.lower_angle = def.lower_angle;
+  joint.upper_angle = def.upper_angle;
+  joint.motor_enabled = def.motor_enabled ? 1 : 0;
+  joint.motor_speed = def.motor_speed;
+  joint.motor_torque_max = def.motor_torque_max;
+  joint.collide_connected = def.collide_connected ? 1 : 0;
+  state_.joints[index] = joint;
+  return JointId{index, joint.generation};
+}
+
+template <int D>
+Error World<D>::destroy_joint(JointId id) {
+  if (const Error error = check(id); !error.ok()) return error;
+  state_.joints[id.index] = Joint<D>{};
+  state_.joints[id.index].generation = id.generation + 1;
+  state_.free_joints.push_back(id.index);
+  return {};
+}
+
+template Result<BodyId> World<2>::create_body(const BodyDef<2>&, std::span<const ShapeDef<2>>);
+template Result<BodyId> World<3>::create_body(const BodyDef<3>&, std::span<const ShapeDef<3>>);
+template Error World<2>::destroy_body(BodyId);
+template Error World<3>::destroy_body(BodyId);
+template Result<JointId> World<2>::create_joint(const JointDef<2>&);
+template Result<JointId> World<3>::create_joint(const JointDef<3>&);
+template Error World<2>::destroy_joint(JointId);
+template Error World<3>::destroy_joint(JointId);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,253 @@
+#include "solver/step_scratch.hpp"
+#include "solver/trig.hpp"
+#include "solver/validate.hpp"
+#include "solver/workers.hpp"
+#include "solver/world.hpp"
+
+namespace cycloid::solver {
+
+static constexpr Error invalid(const char* field) {
+  return {Code::kInvalid, field};
+}
+
+/// Adds `change` to `sum` unless that leaves the bound; then nothing has changed.
+template <int N>
+static bool add_within(Vec<N>& sum, const Vec<N>& change, float bound) {
+  const Vec<N> result = sum + change;
+  if (!within(result, bound)) return false;
+  sum = result;
+  return true;
+}
+
+template <int D>
+Error World<D>::apply_force(BodyId id, const Vec<D>& force_n) {
+  if (const Error error = check(id); !error.ok()) return error;
+  if (!add_within(state_.bodies[id.index].force, force_n, kForceMax)) return invalid("force_n");
+  return {};
+}
+
+template <int D>
+Error World<D>::apply_torque(BodyId id, const Spin<D>& torque_n_m) {
+  if (const Error error = check(id); !error.ok()) return error;
+  if (!add_within(state_.bodies[id.index].torque, torque_n_m, kForceMax))
+    return invalid("torque_n_m");
+  return {};
+}
+
+template <int D>
+Error World<D>::apply_impulse(BodyId id, const Vec<D>& impulse_n_s) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Body<D>& body = state_.bodies[id.index];
+  if (!within(impulse_n_s, kForceMax)) return invalid("impulse_n_s");
+  if (!add_within(body.velocity, body.inverse_mass * impulse_n_s, kSpeedMax))
+    return invalid("impulse_n_s");
+  return {};
+}
+
+template <int D>
+Error World<D>::apply_angular_impulse(BodyId id, const Spin<D>& impulse_n_m_s) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Body<D>& body = state_.bodies[id.index];
+  if (!within(impulse_n_m_s, kForceMax)) return invalid("impulse_n_m_s");
+  const Inertia<D> inverse = world_inertia(body.inverse_inertia, body.rotation);
+  if (!add_within(body.spin, inverse * impulse_n_m_s, kSpinMax)) return invalid("impulse_n_m_s");
+  return {};
+}
+
+template <int D>
+Error World<D>::set_velocity(BodyId id, const Vec<D>& velocity, const Spin<D>& spin) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Body<D>& body = state_.bodies[id.index];
+  if (!within(velocity, kSpeedMax)) return invalid("velocity");
+  if (!within(spin, kSpinMax)) return invalid("spin");
+  if (body.kind == BodyKind::kStatic) return invalid("body");
+  body.velocity = velocity;
+  if (body.fixed_rotation == 0) body.spin = spin;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& rotation) {
+  if (const Error error = check(id); !error.ok()) return error;
+  if (!within(position, kPositionMax)) return invalid("position");
+  if (!within(dot(rotation, rotation), 0.998f, 1.002f)) return invalid("rotation");
+  Body<D>& body = state_.bodies[id.index];
+  body.rotation = normalized_or(rotation, rotation);
+  body.position = position + rotate(body.rotation, body.local_center);
+  return {};
+}
+
+template <int D>
+Error World<D>::set_gravity(const Vec<D>& gravity) {
+  if (!within(gravity, 1.0e4f)) return invalid("gravity");
+  state_.header.gravity = gravity;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_gravity_scale(BodyId id, float scale) {
+  if (const Error error = check(id); !error.ok()) return error;
+  if (!within(scale, -1.0e3f, 1.0e3f)) return invalid("scale");
+  state_.bodies[id.index].gravity_scale = scale;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_damping(BodyId id, float linear, float angular) {
+  if (const Error error = check(id); !error.ok()) return error;
+  if (!within(linear, 0.0f, 1.0e4f)) return invalid("linear");
+  if (!within(angular, 0.0f, 1.0e4f)) return invalid("angular");
+  state_.bodies[id.index].linear_damping = linear;
+  state_.bodies[id.index].angular_damping = angular;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_mass(BodyId id, float mass_kg) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Body<D>& body = state_.bodies[id.index];
+  if (body.inverse_mass == 0.0f) return invalid("body");
+  if (!within(mass_kg, kMassMin, kMassMax)) return invalid("mass_kg");
+  const float scale = mass_kg / body.mass;
+  body.mass = mass_kg;
+  body.inverse_mass = 1.0f / mass_kg;
+  for (float& moment : body.inertia.m) moment *= scale;
+  for (float& moment : body.inverse_inertia.m) moment *= 1.0f / scale;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_material(std::uint32_t material, const Material& values) {
+  if (material >= state_.materials.size()) return invalid("material");
+  if (const Error error = validate(values, static_cast<int>(material)); !error.ok()) return error;
+  state_.materials[material] = values;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_filter(BodyId id, std::uint32_t shape, const Filter& filter) {
+  if (const Error error = check(id); !error.ok()) return error;
+  for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone; s = state_.shapes[s].next)
+    if (state_.shapes[s].ordinal == shape) {
+      state_.shapes[s].filter = filter;
+      return {};
+    }
+  return invalid("shape");
+}
+
+template <int D>
+Error World<D>::set_motor(JointId id, bool enabled, float speed, float torque_max) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Joint<D>& joint = state_.joints[id.index];
+  const bool has_axis = joint.kind == JointKind::kRevolute && Dim<D>::kSpin == 1;
+  if (enabled && !has_axis) return invalid("enabled");
+  if (!within(speed, -kSpinMax, kSpinMax)) return invalid("speed");
+  if (!within(torque_max, 0.0f, kForceMax)) return invalid("torque_max");
+  joint.motor_enabled = enabled ? 1 : 0;
+  joint.motor_speed = speed;
+  joint.motor_torque_max = torque_max;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_limits(JointId id, bool enabled, float lower_angle, float upper_angle) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Joint<D>& joint = state_.joints[id.index];
+  const bool has_axis = joint.kind == JointKind::kRevolute && Dim<D>::kSpin == 1;
+  if (enabled && !has_axis) return invalid("enabled");
+  if (!within(lower_angle, -3.2f, 3.2f)) return invalid("lower_angle");
+  if (!within(upper_angle, lower_angle, 3.2f)) return invalid("upper_angle");
+  joint.limit_enabled = enabled ? 1 : 0;
+  joint.lower_angle = lower_angle;
+  joint.upper_angle = upper_angle;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_spring(JointId id, float length, float hertz, float damping_ratio) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Joint<D>& joint = state_.joints[id.index];
+  if (joint.kind != JointKind::kDistance) return invalid("joint");
+  if (!within(length, kSizeMin, kSizeMax)) return invalid("length");
+  if (!within(hertz, 0.0f, 1.0e5f)) return invalid("hertz");
+  if (!within(damping_ratio, 0.0f, 1.0e3f)) return invalid("damping_ratio");
+  joint.length = length;
+  joint.hertz = hertz;
+  joint.damping_ratio = damping_ratio;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_tuning(const Tuning& tuning) {
+  if (const Error error = validate(tuning); !error.ok()) return error;
+  state_.header.tuning = tuning;
+  return {};
+}
+
+/// Angle about the plane's axis of b relative to a, since creation.
+static float angle_of(const Body<2>& a, const Body<2>& b, const Joint<2>& joint) {
+  const Rotation<2> turned = compose(Rotation<2>{{a.rotation[0], -a.rotation[1]}}, b.rotation);
+  const Rotation<2> since = compose(Rotation<2>{{joint.reference[0], -joint.reference[1]}}, turned);
+  return atan2(since[1], since[0]);
+}
+static float angle_of(const Body<3>&, const Body<3>&, const Joint<3>&) {
+  return 0.0f;
+}
+
+template <int D>
+Result<float> World<D>::joint_angle(JointId id) const {
+  if (const Error error = check(id); !error.ok()) return error;
+  const Joint<D>& joint = state_.joints[id.index];
+  if (joint.kind != JointKind::kRevolute || Dim<D>::kSpin != 1) return invalid("joint");
+  return angle_of(state_.bodies[joint.body_a], state_.bodies[joint.body_b], joint);
+}
+
+template <int D>
+Result<float> World<D>::joint_separation(JointId id) const {
+  if (const Error error = check(id); !error.ok()) return error;
+  const Joint<D>& joint = state_.joints[id.index];
+  const Body<D>& a = state_.bodies[joint.body_a];
+  const Body<D>& b = state_.bodies[joint.body_b];
+  const Vec<D> between = (b.position - a.position) + rotate(b.rotation, joint.anchor_b) -
+                         rotate(a.rotation, joint.anchor_a);
+  return length(between);
+}
+
+template Error World<2>::apply_force(BodyId, const Vec<2>&);
+template Error World<2>::apply_torque(BodyId, const Spin<2>&);
+template Error World<2>::apply_impulse(BodyId, const Vec<2>&);
+template Error World<2>::apply_angular_impulse(BodyId, const Spin<2>&);
+template Error World<2>::set_velocity(BodyId, const Vec<2>&, const Spin<2>&);
+template Error World<2>::set_pose(BodyId, const Vec<2>&, const Rotation<2>&);
+template Error World<2>::set_gravity(const Vec<2>&);
+template Error World<2>::set_gravity_scale(BodyId, float);
+template Error World<2>::set_damping(BodyId, float, float);
+template Error World<2>::set_mass(BodyId, float);
+template Error World<2>::set_material(std::uint32_t, const Material&);
+template Error World<2>::set_filter(BodyId, std::uint32_t, const Filter&);
+template Error World<2>::set_motor(JointId, bool, float, float);
+template Error World<2>::set_limits(JointId, bool, float, float);
+template Error World<2>::set_spring(JointId, float, float, float);
+template Error World<2>::set_tuning(const Tuning&);
+template Result<float> World<2>::joint_angle(JointId) const;
+template Result<float> World<2>::joint_separation(JointId) const;
+template Error World<3>::apply_force(BodyId, const Vec<3>&);
+template Error World<3>::apply_torque(BodyId, const Spin<3>&);
+template Error World<3>::apply_impulse(BodyId, const Vec<3>&);
+template Error World<3>::apply_angular_impulse(BodyId, const Spin<3>&);
+template Error World<3>::set_velocity(BodyId, const Vec<3>&, const Spin<3>&);
+template Error World<3>::set_pose(BodyId, const Vec<3>&, const Rotation<3>&);
+template Error World<3>::set_gravity(const Vec<3>&);
+template Error World<3>::set_gravity_scale(BodyId, float);
+template Error World<3>::set_damping(BodyId, float, float);
+template Error World<3>::set_mass(BodyId, float);
+template Error World<3>::set_material(std::uint32_t, const Material&);
+template Error World<3>::set_filter(BodyId, std::uint32_t, const Filter&);
+template Error World<3>::set_motor(JointId, bool, float, float);
+template Error World<3>::set_limits(JointId, bool, float, float);
+template Error World<3>::set_spring(JointId, float, float, float);
+template Error World<3>::set_tuning(const Tuning&);
+template Result<float> World<3>::joint_angle(JointId) const;
+template Result<float> World<3>::joint_separation(JointId) const;
+
+}  // namespace cycloid::solver
