@@ -7,15 +7,14 @@ namespace cycloid::solver {
 /// Spreads the low bits of x so that D - 1 zeros follow each.
 template <int D>
 static std::uint32_t spread_bits(std::uint32_t x) {
-  constexpr int kBits = D == 2 ? 16 : 10;
   std::uint32_t spread = 0;
-  for (int i = 0; i < kBits; ++i) spread |= ((x >> i) & 1u) << (i * D);
+  for (int i = 0; i < Dim<D>::kMortonBits; ++i) spread |= ((x >> i) & 1u) << (i * D);
   return spread;
 }
 
 template <int D>
 static std::uint32_t morton_code(const Bounds<D>& box, const Bounds<D>& world) {
-  constexpr float kCells = D == 2 ? 65535.0f : 1023.0f;
+  constexpr float kCells = static_cast<float>((1 << Dim<D>::kMortonBits) - 1);
   std::uint32_t code = 0;
   for (int i = 0; i < D; ++i) {
     const float extent = max(world.upper[i] - world.lower[i], 1.0e-6f);

@@ -1,0 +1,51 @@
+# What a build needs from the distribution. Sourced by ./dev.
+
+packages=(
+  g++ cmake ninja-build ccache git          # the tools
+  libeigen3-dev libxxhash-dev               # solver: small matrices; hashing
+  nlohmann-json3-dev libflatbuffers-dev     # scenes and protocol: JSON; binary forms
+  flatbuffers-compiler
+  libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
+  libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
+)
+
+is_installed() {
+  [[ "$(dpkg-query -W -f='${db:Status-Status}' "$1" 2>/dev/null)" == installed ]]
+}
+
+as_root() {
+  if [[ $(id -u) == 0 ]]; then
+    env DEBIAN_FRONTEND=noninteractive "$@"
+  elif command -v sudo >/dev/null; then
+    sudo env DEBIAN_FRONTEND=noninteractive "$@"
+  else
+    printf 'dev: packages are missing and there is no sudo; as root, type:\n  %s\n' "$*" >&2
+    return 1
+  fi
+}
+
+# setup [PACKAGE...]: installs what is missing of the list above and of the arguments.
+setup() {
+  phase="set up packages"
+  local missing=() package removed
+  for package in "${packages[@]}" "$@"; do
+    if ! command -v dpkg-query >/dev/null || ! is_installed "$package"; then
+      missing+=("$package")
+    fi
+  done
+  if ((${#missing[@]} == 0)); then return; fi
+  if ! command -v apt-get >/dev/null; then
+    printf 'dev: not a Debian or Ubuntu; this may be missing: %s\n' "${missing[*]}" >&2
+    return
+  fi
+  begin "install ${missing[*]}"
+  # Package lists of a fresh machine are empty, and old ones name files that are gone.
+  as_root apt-get update -q
+  removed=$(apt-get -s install --no-install-recommends "${missing[@]}" | awk '/^Remv/ { print $2 }')
+  if [[ -n "$removed" ]]; then
+    printf 'dev: installing %s would remove: %s\n' "${missing[*]}" "$removed" >&2
+    printf 'dev: nothing was changed; remove these yourself or use another machine.\n' >&2
+    return 1
+  fi
+  as_root apt-get install -y -q --no-install-recommends --no-remove "${missing[@]}"
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <functional>
+#include <string>
+
+#include "cli/exit_codes.hpp"
+
+namespace cycloid::cli {
+
+/// What the command line asks for: filled in by the parser, run by main.
+struct Action {
+  bool json = false;  ///< One JSON object on stdout instead of text.
+  std::function<Exit()> run;
+};
+
+/// A subcommand with the flags that all have.
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& summary,
+                      Action& action);
+
+// One file each. Every one of them adds its options to `app` and, when chosen, sets `action.run`.
+void add_run(CLI::App& app, Action& action);
+void add_replay(CLI::App& app, Action& action);
+void add_verify(CLI::App& app, Action& action);
+void add_diff(CLI::App& app, Action& action);
+void add_scene(CLI::App& app, Action& action);
+void add_version(CLI::App& app, Action& action);
+void add_serve(CLI::App& app, Action& action);
+void add_join(CLI::App& app, Action& action);
+void add_demo(CLI::App& app, Action& action);
+
+}  // namespace cycloid::cli

@@ -1,0 +1,69 @@
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <exception>
+#include <iostream>
+#include <string_view>
+
+#include "cli/commands.hpp"
+#include "cli/output.hpp"
+
+namespace cycloid::cli {
+
+CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& summary,
+                      Action& action) {
+  CLI::App* command = app.add_subcommand(name, summary);
+  command->add_flag("--json", action.json, "One JSON object on stdout");
+  command->footer(kExitCodesText);
+  return command;
+}
+
+static Exit parse_and_run(int argc, char** argv) {
+  CLI::App app("Cycloid: a deterministic lockstep physics server", "cycloid");
+  app.footer(kExitCodesText);
+  Action action;
+#ifdef CYCLOID_NETWORK
+  add_serve(app, action);
+  add_join(app, action);
+  add_demo(app, action);
+#endif
+  add_run(app, action);
+  add_replay(app, action);
+  add_verify(app, action);
+  add_diff(app, action);
+  add_scene(app, action);
+  add_version(app, action);
+  try {
+    app.parse(argc, argv);
+  } catch (const CLI::Success& help) {
+    app.exit(help);
+    return kExitGood;
+  } catch (const CLI::ParseError& error) {
+    throw Failure(kExitUsage, std::string(error.what()) + " (see --help)");
+  }
+  if (!action.run) throw Failure(kExitUsage, "a subcommand is required (see --help)");
+  return action.run();
+}
+
+static Exit report_failure(Exit exit, const std::string& what, bool json) {
+  std::cerr << "cycloid: " << what << '\n';
+  if (json) print_json({{"error", what}}, exit);
+  return exit;
+}
+
+}  // namespace cycloid::cli
+
+int main(int argc, char** argv) {
+  using namespace cycloid::cli;
+  const bool json =
+      std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
+  Exit exit = kExitGood;
+  try {
+    exit = parse_and_run(argc, argv);
+  } catch (const Failure& failure) {
+    exit = report_failure(failure.exit, failure.what(), json);
+  } catch (const std::exception& error) {  // What the environment did: memory, disk, network.
+    exit = report_failure(kExitIo, error.what(), json);
+  }
+  if (!std::cout.flush()) exit = report_failure(kExitIo, "stdout: cannot be written", false);
+  return exit;
+}

@@ -1,0 +1,61 @@
+#include "cli/output.hpp"
+
+#include <cstdio>
+#include <filesystem>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <utility>
+
+namespace cycloid::cli {
+
+std::string hex16(std::uint64_t value) {
+  std::string text(16, '0');
+  for (std::size_t i = text.size(); i-- > 0; value >>= 4) text[i] = "0123456789abcdef"[value & 15];
+  return text;
+}
+
+void print_json(Json object, Exit exit) {
+  object["exit"] = static_cast<int>(exit);
+  // A name in a scene may hold any bytes; what is not UTF-8 must not end the program.
+  std::cout << object.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
+}
+
+std::vector<std::byte> read_file(const std::string& file) {
+  std::error_code error;
+  if (std::filesystem::is_directory(file, error)) throw Failure(kExitIo, file + ": is a directory");
+  std::ifstream stream(file, std::ios::binary);
+  if (!stream) throw Failure(kExitIo, file + ": cannot be opened");
+  const std::string text((std::istreambuf_iterator<char>(stream)),
+                         std::istreambuf_iterator<char>());
+  if (stream.bad()) throw Failure(kExitIo, file + ": cannot be read");
+  const auto* begin = reinterpret_cast<const std::byte*>(text.data());
+  return {begin, begin + text.size()};
+}
+
+void write_file(const std::string& file, const std::string& bytes) {
+  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
+  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+  stream.close();
+  if (!stream) throw Failure(kExitIo, file + ": cannot be written");
+}
+
+scenes::Scene load_scene(const std::string& what) {
+  scenes::Loaded loaded = scenes::load(what);
+  if (loaded.scene) return std::move(*loaded.scene);
+  std::error_code error;
+  const bool is_file = std::filesystem::exists(what, error);
+  if (is_file) read_file(what);  // Says so where it cannot be read.
+  throw Failure(is_file ? kExitCorrupt : kExitUsage, mistakes_text(what, loaded.mistakes));
+}
+
+std::string mistakes_text(const std::string& file, const std::vector<scenes::Mistake>& mistakes) {
+  std::string text;
+  for (const scenes::Mistake& mistake : mistakes) {
+    if (!text.empty()) text += '\n';
+    text += file + ": " + (mistake.path.empty() ? "" : mistake.path + ": ") + mistake.reason;
+  }
+  return text;
+}
+
+}  // namespace cycloid::cli

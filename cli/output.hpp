@@ -1,0 +1,42 @@
+#pragma once
+
+#include <cstddef>
+#include <cstdint>
+#include <nlohmann/json.hpp>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "cli/exit_codes.hpp"
+#include "scenes/catalogue.hpp"
+
+namespace cycloid::cli {
+
+/// Keeps the order of insertion, so that output is stable and reads well.
+using Json = nlohmann::ordered_json;
+
+/// Ends the program with a message and an exit code; caught in main alone.
+struct Failure : std::runtime_error {
+  Failure(Exit exit_code, const std::string& message)
+      : std::runtime_error(message), exit(exit_code) {}
+  Exit exit;
+};
+
+/// A digest as it is always written: 16 hexadecimal digits.
+std::string hex16(std::uint64_t value);
+
+/// `object` with the exit code as its last member, on one line of stdout.
+void print_json(Json object, Exit exit);
+
+/// The bytes of a file; a Failure with kExitIo naming it where it cannot be read.
+std::vector<std::byte> read_file(const std::string& file);
+void write_file(const std::string& file, const std::string& bytes);
+
+/// A catalogue scene or a scene file. A Failure names each mistake: kExitUsage where there is no
+/// such name, kExitCorrupt where the file is no scene.
+scenes::Scene load_scene(const std::string& what);
+
+/// "FILE: path: reason", one line per mistake, without the last newline.
+std::string mistakes_text(const std::string& file, const std::vector<scenes::Mistake>& mistakes);
+
+}  // namespace cycloid::cli

@@ -1,0 +1,191 @@
+#include "scene_generated.h"
+#include "scenes/catalogue.hpp"
+
+namespace cycloid::scenes {
+
+static constexpr std::size_t kBinaryBytesMax = 64u << 20;
+
+/// Copies verified tables. A hostile buffer may let many offsets share one string or vector; what is
+/// copied out of it is therefore bounded by its own size, which an honest buffer never exceeds.
+class BinaryReader {
+ public:
+  explicit BinaryReader(std::size_t bytes) : budget_(bytes) {}
+  bool overdrawn() const { return overdrawn_; }
+
+  std::string text(const flatbuffers::String* from) {
+    return from == nullptr || !spend(from->size()) ? std::string() : from->str();
+  }
+  static Triple triple(const fb::Triple* v) {
+    return v == nullptr ? Triple{} : Triple{v->x(), v->y(), v->z()};
+  }
+  static std::array<float, 4> quadruple(const fb::Quadruple* v) {
+    if (v == nullptr) return {};
+    return {v->x(), v->y(), v->z(), v->w()};
+  }
+
+  template <class Table, class Part>
+  void read_all(const flatbuffers::Vector<flatbuffers::Offset<Table>>* from,
+                std::vector<Part>& to) {
+    if (from == nullptr) return;
+    for (const Table* table : *from) {
+      if (!spend(sizeof(flatbuffers::uoffset_t))) return;
+      read(*table, to.emplace_back());
+    }
+  }
+
+  void read(const fb::Material& from, SceneMaterial& to) {
+    to.name = text(from.name());
+    to.friction = from.friction();
+    to.restitution = from.restitution();
+  }
+
+  void read(const fb::Shape& from, SceneShape& to) {
+    to.kind = static_cast<solver::ShapeKind>(from.kind());
+    if (from.points() != nullptr && spend(from.points()->size() * sizeof(fb::Triple)))
+      for (const fb::Triple* point : *from.points()) to.points.push_back(triple(point));
+    to.radius = from.radius();
+    to.normal = triple(from.normal());
+    to.offset = from.offset();
+    to.loop = from.loop();
+    to.density = from.density();
+    to.material = text(from.material());
+    if (const fb::Filter* filter = from.filter())
+      to.filter = {filter->category(), filter->mask(), filter->group()};
+  }
+
+  void read(const fb::Body& from, SceneBody& to) {
+    to.name = text(from.name());
+    to.kind = static_cast<solver::BodyKind>(from.kind());
+    to.position = triple(from.position());
+    to.angle = from.angle();
+    to.rotation = quadruple(from.rotation());
+    to.velocity = triple(from.velocity());
+    to.spin = triple(from.spin());
+    to.mass = from.mass();
+    to.linear_damping = from.linear_damping();
+    to.angular_damping = from.angular_damping();
+    to.gravity_scale = from.gravity_scale();
+    to.fixed_rotation = from.fixed_rotation();
+    to.tag = from.tag();
+    read_all(from.shapes(), to.shapes);
+  }
+
+  void read(const fb::Joint& from, SceneJoint& to) {
+    to.name = text(from.name());
+    to.kind = static_cast<solver::JointKind>(from.kind());
+    to.body_a = text(from.body_a());
+    to.body_b = text(from.body_b());
+    to.anchor_a = triple(from.anchor_a());
+    to.anchor_b = triple(from.anchor_b());
+    to.length = from.length();
+    to.hertz = from.hertz();
+    to.damping_ratio = from.damping_ratio();
+    to.limit_enabled = from.limit_enabled();
+    to.lower_angle = from.lower_angle();
+    to.upper_angle = from.upper_angle();
+    to.motor_enabled = from.motor_enabled();
+    to.motor_speed = from.motor_speed();
+    to.motor_torque_max = from.motor_torque_max();
+    to.collide_connected = from.collide_connected();
+  }
+
+  void read(const fb::Control& from, Control& to) {
+    to.source = static_cast<Source>(from.source());
+    to.index = from.index();
+    to.effect = static_cast<Effect>(from.effect());
+    to.target = text(from.target());
+    to.value = triple(from.value());
+    to.frame = static_cast<Frame>(from.frame());
+    to.position = triple(from.position());
+    to.velocity = triple(from.velocity());
+    to.limit = from.limit();
+  }
+
+  void read(const fb::ScriptEntry& from, ScriptEntry& to) {
+    to.from = from.from();
+    to.until = from.until();
+    to.every = from.every();
+    to.hold = from.hold();
+    to.axes = quadruple(from.axes());
+    to.buttons = from.buttons();
+  }
+
+  void read(const fb::Seat& from, Seat& to) {
+    to.name = text(from.name());
+    read_all(from.controls(), to.controls);
+    read_all(from.script(), to.script);
+  }
+
+  void read(const fb::Tuning& from, solver::Tuning& to) {
+    to.substeps = from.substeps();
+    to.sweeps = from.sweeps();
+    to.relax_sweeps = from.relax_sweeps();
+    to.stabilisation = from.stabilisation() == fb::Stabilisation::baumgarte
+                           ? solver::Stabilisation::kBaumgarte
+                           : solver::Stabilisation::kSoft;
+    to.baumgarte = from.baumgarte();
+    to.slop = from.slop();
+    to.contact_hertz = from.contact_hertz();
+    to.contact_damping_ratio = from.contact_damping_ratio();
+    to.joint_hertz = from.joint_hertz();
+    to.joint_damping_ratio = from.joint_damping_ratio();
+    to.push_speed_max = from.push_speed_max();
+    to.restitution_threshold = from.restitution_threshold();
+    to.speculative_distance = from.speculative_distance();
+  }
+
+  void read(const fb::Limits& from, solver::Limits& to) {
+    to = {from.bodies(),   from.shapes(),    from.joints(),
+          from.contacts(), from.materials(), from.registers()};
+  }
+
+  void read(const fb::Scene& from, Scene& to) {
+    to.name = text(from.name());
+    to.summary = text(from.summary());
+    to.dimension = from.dimension();
+    to.gravity = triple(from.gravity());
+    to.tick_hz = from.tick_hz();
+    if (from.tuning() != nullptr) read(*from.tuning(), to.tuning);
+    if (from.limits() != nullptr) read(*from.limits(), to.limits);
+    read_all(from.materials(), to.materials);
+    read_all(from.bodies(), to.bodies);
+    read_all(from.joints(), to.joints);
+    read_all(from.prefabs(), to.prefabs);
+    read_all(from.seats(), to.seats);
+  }
+
+ private:
+  bool spend(std::size_t bytes) {
+    if (bytes > budget_) overdrawn_ = true;
+    if (overdrawn_) return false;
+    budget_ -= bytes;
+    return true;
+  }
+
+  std::size_t budget_;
+  bool overdrawn_ = false;
+};
+
+Loaded from_binary(std::span<const std::byte> bytes) {
+  Loaded loaded;
+  const auto refuse = [&](const char* reason) {
+    loaded.mistakes.push_back({"", reason});
+    return loaded;
+  };
+  // The library compares the identifier without looking at the size, and asserts on the largest.
+  if (bytes.size() < 8 || bytes.size() > kBinaryBytesMax)
+    return refuse("is not a binary scene: its size is out of range");
+  const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
+  if (!fb::SceneBufferHasIdentifier(data)) return refuse("is neither JSON nor a binary scene");
+  flatbuffers::Verifier verifier(data, bytes.size(), /*max_depth=*/8, /*max_tables=*/1u << 20);
+  if (!fb::VerifySceneBuffer(verifier)) return refuse("is a damaged binary scene");
+  Scene scene;
+  BinaryReader reader(bytes.size());
+  reader.read(*fb::GetScene(data), scene);
+  if (reader.overdrawn()) return refuse("is a damaged binary scene: parts of it overlap");
+  loaded.mistakes = check(scene);
+  if (loaded.mistakes.empty()) loaded.scene = std::move(scene);
+  return loaded;
+}
+
+}  // namespace cycloid::scenes

@@ -1,0 +1,168 @@
+#include "scene_generated.h"
+#include "scenes/catalogue.hpp"
+
+namespace cycloid::scenes {
+
+static std::unique_ptr<fb::Triple> triple(const Triple& v) {
+  return std::make_unique<fb::Triple>(v[0], v[1], v[2]);
+}
+static std::unique_ptr<fb::Quadruple> quadruple(const std::array<float, 4>& v) {
+  return std::make_unique<fb::Quadruple>(v[0], v[1], v[2], v[3]);
+}
+
+static std::unique_ptr<fb::MaterialT> packed(const SceneMaterial& from) {
+  auto to = std::make_unique<fb::MaterialT>();
+  to->name = from.name;
+  to->friction = from.friction;
+  to->restitution = from.restitution;
+  return to;
+}
+
+static std::unique_ptr<fb::ShapeT> packed(const SceneShape& from) {
+  auto to = std::make_unique<fb::ShapeT>();
+  to->kind = static_cast<fb::ShapeKind>(from.kind);
+  for (const Triple& point : from.points) to->points.emplace_back(point[0], point[1], point[2]);
+  to->radius = from.radius;
+  to->normal = triple(from.normal);
+  to->offset = from.offset;
+  to->loop = from.loop;
+  to->density = from.density;
+  to->material = from.material;
+  to->filter =
+      std::make_unique<fb::Filter>(from.filter.category, from.filter.mask, from.filter.group);
+  return to;
+}
+
+template <class Packed, class Part>
+static void pack_all(const std::vector<Part>& from, std::vector<std::unique_ptr<Packed>>& to);
+
+static std::unique_ptr<fb::BodyT> packed(const SceneBody& from) {
+  auto to = std::make_unique<fb::BodyT>();
+  to->name = from.name;
+  to->kind = static_cast<fb::BodyKind>(from.kind);
+  to->position = triple(from.position);
+  to->angle = from.angle;
+  to->rotation = quadruple(from.rotation);
+  to->velocity = triple(from.velocity);
+  to->spin = triple(from.spin);
+  to->mass = from.mass;
+  to->linear_damping = from.linear_damping;
+  to->angular_damping = from.angular_damping;
+  to->gravity_scale = from.gravity_scale;
+  to->fixed_rotation = from.fixed_rotation;
+  to->tag = from.tag;
+  pack_all(from.shapes, to->shapes);
+  return to;
+}
+
+static std::unique_ptr<fb::JointT> packed(const SceneJoint& from) {
+  auto to = std::make_unique<fb::JointT>();
+  to->name = from.name;
+  to->kind = static_cast<fb::JointKind>(from.kind);
+  to->body_a = from.body_a;
+  to->body_b = from.body_b;
+  to->anchor_a = triple(from.anchor_a);
+  to->anchor_b = triple(from.anchor_b);
+  to->length = from.length;
+  to->hertz = from.hertz;
+  to->damping_ratio = from.damping_ratio;
+  to->limit_enabled = from.limit_enabled;
+  to->lower_angle = from.lower_angle;
+  to->upper_angle = from.upper_angle;
+  to->motor_enabled = from.motor_enabled;
+  to->motor_speed = from.motor_speed;
+  to->motor_torque_max = from.motor_torque_max;
+  to->collide_connected = from.collide_connected;
+  return to;
+}
+
+static std::unique_ptr<fb::ControlT> packed(const Control& from) {
+  auto to = std::make_unique<fb::ControlT>();
+  to->source = static_cast<fb::Source>(from.source);
+  to->index = from.index;
+  to->effect = static_cast<fb::Effect>(from.effect);
+  to->target = from.target;
+  to->value = triple(from.value);
+  to->frame = static_cast<fb::Frame>(from.frame);
+  to->position = triple(from.position);
+  to->velocity = triple(from.velocity);
+  to->limit = from.limit;
+  return to;
+}
+
+static std::unique_ptr<fb::ScriptEntryT> packed(const ScriptEntry& from) {
+  auto to = std::make_unique<fb::ScriptEntryT>();
+  to->from = from.from;
+  to->until = from.until;
+  to->every = from.every;
+  to->hold = from.hold;
+  to->axes = quadruple(from.axes);
+  to->buttons = from.buttons;
+  return to;
+}
+
+static std::unique_ptr<fb::SeatT> packed(const Seat& from) {
+  auto to = std::make_unique<fb::SeatT>();
+  to->name = from.name;
+  pack_all(from.controls, to->controls);
+  pack_all(from.script, to->script);
+  return to;
+}
+
+template <class Packed, class Part>
+static void pack_all(const std::vector<Part>& from, std::vector<std::unique_ptr<Packed>>& to) {
+  for (const Part& part : from) to.push_back(packed(part));
+}
+
+static std::unique_ptr<fb::TuningT> packed(const solver::Tuning& from) {
+  auto to = std::make_unique<fb::TuningT>();
+  to->substeps = from.substeps;
+  to->sweeps = from.sweeps;
+  to->relax_sweeps = from.relax_sweeps;
+  to->stabilisation = from.stabilisation == solver::Stabilisation::kSoft
+                          ? fb::Stabilisation::soft
+                          : fb::Stabilisation::baumgarte;
+  to->baumgarte = from.baumgarte;
+  to->slop = from.slop;
+  to->contact_hertz = from.contact_hertz;
+  to->contact_damping_ratio = from.contact_damping_ratio;
+  to->joint_hertz = from.joint_hertz;
+  to->joint_damping_ratio = from.joint_damping_ratio;
+  to->push_speed_max = from.push_speed_max;
+  to->restitution_threshold = from.restitution_threshold;
+  to->speculative_distance = from.speculative_distance;
+  return to;
+}
+
+static std::unique_ptr<fb::LimitsT> packed(const solver::Limits& from) {
+  auto to = std::make_unique<fb::LimitsT>();
+  to->bodies = from.bodies;
+  to->shapes = from.shapes;
+  to->joints = from.joints;
+  to->contacts = from.contacts;
+  to->materials = from.materials;
+  to->registers = from.registers;
+  return to;
+}
+
+std::vector<std::byte> to_binary(const Scene& scene) {
+  fb::SceneT to;
+  to.name = scene.name;
+  to.summary = scene.summary;
+  to.dimension = scene.dimension;
+  to.gravity = triple(scene.gravity);
+  to.tick_hz = scene.tick_hz;
+  to.tuning = packed(scene.tuning);
+  to.limits = packed(scene.limits);
+  pack_all(scene.materials, to.materials);
+  pack_all(scene.bodies, to.bodies);
+  pack_all(scene.joints, to.joints);
+  pack_all(scene.prefabs, to.prefabs);
+  pack_all(scene.seats, to.seats);
+  flatbuffers::FlatBufferBuilder builder;
+  fb::FinishSceneBuffer(builder, fb::Scene::Pack(builder, &to));
+  const auto* data = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  return {data, data + builder.GetSize()};
+}
+
+}  // namespace cycloid::scenes

@@ -1,0 +1,269 @@
+#include "scenes/build.hpp"
+
+#include <map>
+
+#include "solver/trig.hpp"
+
+namespace cycloid::scenes {
+
+using solver::Error;
+
+template <int D>
+static solver::Vec<D> vec(const Triple& from) {
+  solver::Vec<D> to;
+  for (int i = 0; i < D; ++i) to[i] = from[static_cast<std::size_t>(i)];
+  return to;
+}
+
+static void set_rotation(const SceneBody& from, solver::BodyDef<2>& to) {
+  solver::sin_cos(from.angle, to.rotation[1], to.rotation[0]);
+  to.spin = {{from.spin[0]}};
+}
+static void set_rotation(const SceneBody& from, solver::BodyDef<3>& to) {
+  for (int i = 0; i < 4; ++i) to.rotation[i] = from.rotation[static_cast<std::size_t>(i)];
+  to.spin = vec<3>(from.spin);
+}
+
+static std::string at(const std::string& path, std::size_t i) {
+  return path + "/" + std::to_string(i);
+}
+
+/// A sentence for an error of the solver about a field.
+static std::string reason_of(const Error& error) {
+  switch (error.code) {
+    case solver::Code::kCapacity: return std::string("exceeds ") + error.field;
+    case solver::Code::kUnknownId: return "names no body";
+    default: break;
+  }
+  const std::string_view field = error.field;
+  if (field == "points") return "has to be a convex outline without repeated points, in the right number";
+  if (field == "radius") return "has to be positive and finite";
+  if (field == "mass") return "has to be positive, or the shapes have to give it";
+  if (field == "rotation" || field == "normal") return "has to have length 1";
+  if (field == "upper_angle") return "has to be at least lower_angle, both within 3.2 rad";
+  if (field == "kind") return "is not possible here";
+  return "is out of range";
+}
+
+template <int D>
+class Builder {
+ public:
+  Builder(const Scene& scene, std::vector<Mistake>& mistakes)
+      : scene_(scene), mistakes_(mistakes) {}
+
+  std::unique_ptr<Built<D>> build() {
+    const std::size_t before = mistakes_.size();
+    solver::Result<solver::World<D>> world = solver::World<D>::create(world_def());
+    if (!world.ok()) {
+      complain(world_path(world.error()), world.error());
+      return nullptr;
+    }
+    built_ = std::make_unique<Built<D>>(Built<D>{std::move(world.value()), {}, {}});
+    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
+    for (std::size_t i = 0; i < scene_.joints.size(); ++i) add_joint(i);
+    for (std::size_t i = 0; i < scene_.prefabs.size(); ++i) add_prefab(i);
+    for (std::size_t i = 0; i < scene_.seats.size(); ++i) add_seat(i);
+    const Error error = built_->world.resize_registers(registers_);
+    if (!error.ok()) complain("/limits/registers", error);
+    return mistakes_.size() == before ? std::move(built_) : nullptr;
+  }
+
+ private:
+  void complain(const std::string& path, const Error& error) {
+    mistakes_.push_back({path, reason_of(error)});
+  }
+  void complain(const std::string& path, const std::string& reason) {
+    mistakes_.push_back({path, reason});
+  }
+
+  solver::WorldDef<D> world_def() const {
+    solver::WorldDef<D> def;
+    def.gravity = vec<D>(scene_.gravity);
+    def.tick_s = 1.0f / scene_.tick_hz;
+    def.tuning = scene_.tuning;
+    def.limits = scene_.limits;
+    def.materials.clear();
+    for (const SceneMaterial& material : scene_.materials)
+      def.materials.push_back({material.friction, material.restitution});
+    if (def.materials.empty()) def.materials.push_back({});
+    return def;
+  }
+
+  static std::string world_path(const Error& error) {
+    const std::string field = error.field;
+    if (error.index >= 0) return "/materials/" + std::to_string(error.index) + "/" + field;
+    if (field == "gravity" || field == "materials") return "/" + field;
+    if (field == "tick_s") return "/tick_hz";
+    if (field.starts_with("limits.")) return "/limits/" + field.substr(7);
+    return "/tuning/" + field;
+  }
+
+  std::uint32_t material_index(const std::string& name) const {
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
+      if (scene_.materials[i].name == name) return static_cast<std::uint32_t>(i);
+    return name.empty() ? 0 : solver::kNone;
+  }
+
+  /// False, with a mistake, where a shape names a material that is not there.
+  bool make_body(const SceneBody& from, const std::string& path, Prefab<D>& to) {
+    to.body.kind = from.kind;
+    to.body.position = vec<D>(from.position);
+    set_rotation(from, to.body);
+    to.body.velocity = vec<D>(from.velocity);
+    to.body.mass = from.mass;
+    to.body.linear_damping = from.linear_damping;
+    to.body.angular_damping = from.angular_damping;
+    to.body.gravity_scale = from.gravity_scale;
+    to.body.fixed_rotation = from.fixed_rotation;
+    to.body.tag = from.tag;
+    for (std::size_t i = 0; i < from.shapes.size(); ++i) {
+      const SceneShape& shape = from.shapes[i];
+      solver::ShapeDef<D>& def = to.shapes.emplace_back();
+      def.kind = shape.kind;
+      for (const Triple& point : shape.points) def.points.push_back(vec<D>(point));
+      def.radius = shape.radius;
+      def.normal = vec<D>(shape.normal);
+      def.offset = shape.offset;
+      def.loop = shape.loop;
+      def.density = shape.density;
+      def.filter = shape.filter;
+      def.material = material_index(shape.material);
+      if (def.material != solver::kNone) continue;
+      complain(at(path + "/shapes", i) + "/material", "names no material: '" + shape.material + "'");
+      return false;
+    }
+    return true;
+  }
+
+  /// The angle is the planar name of what the solver calls rotation.
+  static std::string body_path(const std::string& path, const Error& error) {
+    const std::string field = error.field;
+    if (field.starts_with("limits.")) return "/limits/" + field.substr(7);
+    const bool of_shape = error.index >= 0;
+    return (of_shape ? at(path + "/shapes", static_cast<std::size_t>(error.index)) : path) + "/" +
+           field;
+  }
+
+  void add_body(std::size_t i) {
+    const SceneBody& from = scene_.bodies[i];
+    const std::string path = at("/bodies", i);
+    Prefab<D> def;
+    if (!make_body(from, path, def)) return;
+    const solver::Result<solver::BodyId> id = built_->world.create_body(def.body, def.shapes);
+    if (!id.ok()) return complain(body_path(path, id.error()), id.error());
+    if (from.name.empty()) return;
+    if (!bodies_.emplace(from.name, id.value()).second)
+      complain(path + "/name", "is the name of an earlier body: '" + from.name + "'");
+  }
+
+  bool find_body(const std::string& name, const std::string& path, solver::BodyId& id) {
+    const auto found = bodies_.find(name);
+    if (found != bodies_.end()) id = found->second;
+    else complain(path, "names no body: '" + name + "'");
+    return found != bodies_.end();
+  }
+
+  void add_joint(std::size_t i) {
+    const SceneJoint& from = scene_.joints[i];
+    const std::string path = at("/joints", i);
+    solver::JointDef<D> def;
+    const bool a = find_body(from.body_a, path + "/body_a", def.body_a);
+    const bool b = find_body(from.body_b, path + "/body_b", def.body_b);
+    if (!a || !b) return;
+    def.kind = from.kind;
+    def.anchor_a = vec<D>(from.anchor_a);
+    def.anchor_b = vec<D>(from.anchor_b);
+    def.length = from.length;
+    def.hertz = from.hertz;
+    def.damping_ratio = from.damping_ratio;
+    def.limit_enabled = from.limit_enabled;
+    def.lower_angle = from.lower_angle;
+    def.upper_angle = from.upper_angle;
+    def.motor_enabled = from.motor_enabled;
+    def.motor_speed = from.motor_speed;
+    def.motor_torque_max = from.motor_torque_max;
+    def.collide_connected = from.collide_connected;
+    const solver::Result<solver::JointId> id = built_->world.create_joint(def);
+    if (!id.ok()) return complain(path + "/" + id.error().field, id.error());
+    if (from.name.empty()) return;
+    if (!joints_.emplace(from.name, std::pair(id.value(), i)).second)
+      complain(path + "/name", "is the name of an earlier joint: '" + from.name + "'");
+  }
+
+  /// A prefab is tried out in a world of its own, so that spawning it can fail for room alone.
+  void add_prefab(std::size_t i) {
+    const SceneBody& from = scene_.prefabs[i];
+    const std::string path = at("/prefabs", i);
+    Prefab<D> prefab;
+    if (!make_body(from, path, prefab)) return;
+    solver::WorldDef<D> def = world_def();
+    def.limits = {};
+    solver::Result<solver::World<D>> world = solver::World<D>::create(def);
+    if (!world.ok()) return;  // Said already, of the scene's own world.
+    const solver::Result<solver::BodyId> id = world.value().create_body(prefab.body, prefab.shapes);
+    if (!id.ok()) return complain(body_path(path, id.error()), id.error());
+    if (from.name.empty()) return complain(path + "/name", "has to be given: controls spawn by it");
+    if (!prefabs_.emplace(from.name, built_->prefabs.size()).second)
+      return complain(path + "/name", "is the name of an earlier prefab: '" + from.name + "'");
+    built_->prefabs.push_back(std::move(prefab));
+  }
+
+  void add_seat(std::size_t i) {
+    const std::string path = at("/seats", i);
+    BoundSeat& seat = built_->seats.emplace_back();
+    if (i == 0) registers_ = static_cast<std::uint32_t>(scene_.seats.size());
+    for (std::size_t c = 0; c < scene_.seats[i].controls.size(); ++c)
+      add_control(scene_.seats[i].controls[c], at(path + "/controls", c), seat);
+  }
+
+  void add_control(const Control& control, const std::string& path, BoundSeat& seat) {
+    BoundControl bound;
+    bound.control = control;
+    switch (control.effect) {
+      case Effect::kForce:
+      case Effect::kTorque:
+      case Effect::kImpulse:
+        if (!find_body(control.target, path + "/target", bound.body)) return;
+        break;
+      case Effect::kMotorSpeed: {
+        const auto found = joints_.find(control.target);
+        if (found == joints_.end())
+          return complain(path + "/target", "names no joint: '" + control.target + "'");
+        bound.joint = found->second.first;
+        bound.motor_torque_max = scene_.joints[found->second.second].motor_torque_max;
+        if (!scene_.joints[found->second.second].motor_enabled)
+          return complain(path + "/target", "names a joint without a motor");
+        break;
+      }
+      case Effect::kSpawn: {
+        const auto found = prefabs_.find(control.target);
+        if (found == prefabs_.end())
+          return complain(path + "/target", "names no prefab: '" + control.target + "'");
+        bound.prefab = found->second;
+        bound.first_register = registers_;
+        registers_ += 1 + 2 * control.limit;
+        break;
+      }
+      default: return complain(path + "/effect", "is unknown");
+    }
+    seat.controls.push_back(std::move(bound));
+  }
+
+  const Scene& scene_;
+  std::vector<Mistake>& mistakes_;
+  std::unique_ptr<Built<D>> built_;
+  std::map<std::string, solver::BodyId> bodies_;
+  std::map<std::string, std::pair<solver::JointId, std::size_t>> joints_;
+  std::map<std::string, std::size_t> prefabs_;
+  std::uint32_t registers_ = 0;
+};
+
+template <int D>
+std::unique_ptr<Built<D>> build(const Scene& scene, std::vector<Mistake>& mistakes) {
+  return Builder<D>(scene, mistakes).build();
+}
+
+template std::unique_ptr<Built<2>> build(const Scene&, std::vector<Mistake>&);
+template std::unique_ptr<Built<3>> build(const Scene&, std::vector<Mistake>&);
+
+}  // namespace cycloid::scenes

@@ -1,0 +1,46 @@
+#pragma once
+
+#include <memory>
+#include <vector>
+
+#include "scenes/catalogue.hpp"
+#include "scenes/scene.hpp"
+
+namespace cycloid::scenes {
+
+/// A control with its names resolved.
+struct BoundControl {
+  Control control;
+  solver::BodyId body;       ///< force, torque, impulse
+  solver::JointId joint;     ///< motor_speed
+  float motor_torque_max = 0.0f;
+  std::size_t prefab = 0;    ///< spawn
+  std::uint32_t first_register = 0;  ///< spawn: next place, then `limit` pairs (index + 1, generation).
+};
+
+struct BoundSeat {
+  std::vector<BoundControl> controls;
+};
+
+/// What a prefab makes.
+template <int D>
+struct Prefab {
+  solver::BodyDef<D> body;
+  std::vector<solver::ShapeDef<D>> shapes;
+};
+
+/// A world with everything of its scene in it, and the seats bound to it. Registers: the buttons of
+/// each seat in the tick before, then the spawn lists.
+template <int D>
+struct Built {
+  solver::World<D> world;
+  std::vector<BoundSeat> seats;
+  std::vector<Prefab<D>> prefabs;
+};
+
+/// Builds the scene and appends every mistake that is in the way; null if there was any.
+/// @pre scene.dimension == D.
+template <int D>
+std::unique_ptr<Built<D>> build(const Scene& scene, std::vector<Mistake>& mistakes);
+
+}  // namespace cycloid::scenes

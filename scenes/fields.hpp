@@ -1,0 +1,203 @@
+#pragma once
+
+#include <span>
+#include <string_view>
+#include <utility>
+
+#include "scenes/scene.hpp"
+
+namespace cycloid::scenes {
+
+/// The fields of each part of a scene by name, once: the JSON reader, the JSON writer and the digest
+/// of a scene's meaning walk these. `f(name, field)` is called for each.
+
+template <class T>
+struct Names;
+template <>
+struct Names<solver::ShapeKind> {
+  static constexpr std::pair<std::string_view, solver::ShapeKind> kAll[] = {
+      {"ball", solver::ShapeKind::kBall},       {"half_space", solver::ShapeKind::kHalfSpace},
+      {"capsule", solver::ShapeKind::kCapsule}, {"polygon", solver::ShapeKind::kPolygon},
+      {"chain", solver::ShapeKind::kChain}};
+};
+template <>
+struct Names<solver::BodyKind> {
+  static constexpr std::pair<std::string_view, solver::BodyKind> kAll[] = {
+      {"static", solver::BodyKind::kStatic},
+      {"kinematic", solver::BodyKind::kKinematic},
+      {"dynamic", solver::BodyKind::kDynamic},
+      {"particle", solver::BodyKind::kParticle}};
+};
+template <>
+struct Names<solver::JointKind> {
+  static constexpr std::pair<std::string_view, solver::JointKind> kAll[] = {
+      {"distance", solver::JointKind::kDistance}, {"revolute", solver::JointKind::kRevolute}};
+};
+template <>
+struct Names<solver::Stabilisation> {
+  static constexpr std::pair<std::string_view, solver::Stabilisation> kAll[] = {
+      {"baumgarte", solver::Stabilisation::kBaumgarte}, {"soft", solver::Stabilisation::kSoft}};
+};
+template <>
+struct Names<Source> {
+  static constexpr std::pair<std::string_view, Source> kAll[] = {{"axis", Source::kAxis},
+                                                                 {"button", Source::kButton}};
+};
+template <>
+struct Names<Effect> {
+  static constexpr std::pair<std::string_view, Effect> kAll[] = {
+      {"force", Effect::kForce},
+      {"torque", Effect::kTorque},
+      {"motor_speed", Effect::kMotorSpeed},
+      {"impulse", Effect::kImpulse},
+      {"spawn", Effect::kSpawn}};
+};
+template <>
+struct Names<Frame> {
+  static constexpr std::pair<std::string_view, Frame> kAll[] = {{"world", Frame::kWorld},
+                                                                {"body", Frame::kBody}};
+};
+
+template <class F>
+void fields(SceneMaterial& m, F&& f) {
+  f("name", m.name);
+  f("friction", m.friction);
+  f("restitution", m.restitution);
+}
+
+template <class F>
+void fields(solver::Filter& filter, F&& f) {
+  f("category", filter.category);
+  f("mask", filter.mask);
+  f("group", filter.group);
+}
+
+template <class F>
+void fields(SceneShape& s, F&& f) {
+  f("kind", s.kind);
+  f("points", s.points);
+  f("radius", s.radius);
+  f("normal", s.normal);
+  f("offset", s.offset);
+  f("loop", s.loop);
+  f("density", s.density);
+  f("material", s.material);
+  f("filter", s.filter);
+}
+
+template <class F>
+void fields(SceneBody& b, F&& f) {
+  f("name", b.name);
+  f("kind", b.kind);
+  f("position", b.position);
+  f("angle", b.angle);
+  f("rotation", b.rotation);
+  f("velocity", b.velocity);
+  f("spin", b.spin);
+  f("mass", b.mass);
+  f("linear_damping", b.linear_damping);
+  f("angular_damping", b.angular_damping);
+  f("gravity_scale", b.gravity_scale);
+  f("fixed_rotation", b.fixed_rotation);
+  f("tag", b.tag);
+  f("shapes", b.shapes);
+}
+
+template <class F>
+void fields(SceneJoint& j, F&& f) {
+  f("name", j.name);
+  f("kind", j.kind);
+  f("body_a", j.body_a);
+  f("body_b", j.body_b);
+  f("anchor_a", j.anchor_a);
+  f("anchor_b", j.anchor_b);
+  f("length", j.length);
+  f("hertz", j.hertz);
+  f("damping_ratio", j.damping_ratio);
+  f("limit_enabled", j.limit_enabled);
+  f("lower_angle", j.lower_angle);
+  f("upper_angle", j.upper_angle);
+  f("motor_enabled", j.motor_enabled);
+  f("motor_speed", j.motor_speed);
+  f("motor_torque_max", j.motor_torque_max);
+  f("collide_connected", j.collide_connected);
+}
+
+template <class F>
+void fields(Control& c, F&& f) {
+  f("source", c.source);
+  f("index", c.index);
+  f("effect", c.effect);
+  f("target", c.target);
+  f("value", c.value);
+  f("frame", c.frame);
+  f("position", c.position);
+  f("velocity", c.velocity);
+  f("limit", c.limit);
+}
+
+template <class F>
+void fields(ScriptEntry& e, F&& f) {
+  f("from", e.from);
+  f("until", e.until);
+  f("every", e.every);
+  f("hold", e.hold);
+  f("axes", e.axes);
+  f("buttons", e.buttons);
+}
+
+template <class F>
+void fields(Seat& s, F&& f) {
+  f("name", s.name);
+  f("controls", s.controls);
+  f("script", s.script);
+}
+
+template <class F>
+void fields(solver::Tuning& t, F&& f) {
+  f("substeps", t.substeps);
+  f("sweeps", t.sweeps);
+  f("relax_sweeps", t.relax_sweeps);
+  f("stabilisation", t.stabilisation);
+  f("baumgarte", t.baumgarte);
+  f("slop", t.slop);
+  f("contact_hertz", t.contact_hertz);
+  f("contact_damping_ratio", t.contact_damping_ratio);
+  f("joint_hertz", t.joint_hertz);
+  f("joint_damping_ratio", t.joint_damping_ratio);
+  f("push_speed_max", t.push_speed_max);
+  f("restitution_threshold", t.restitution_threshold);
+  f("speculative_distance", t.speculative_distance);
+}
+
+template <class F>
+void fields(solver::Limits& l, F&& f) {
+  f("bodies", l.bodies);
+  f("shapes", l.shapes);
+  f("joints", l.joints);
+  f("contacts", l.contacts);
+  f("materials", l.materials);
+  f("registers", l.registers);
+}
+
+template <class F>
+void fields(Scene& s, F&& f) {
+  f("name", s.name);
+  f("summary", s.summary);
+  f("dimension", s.dimension);
+  f("gravity", s.gravity);
+  f("tick_hz", s.tick_hz);
+  f("tuning", s.tuning);
+  f("limits", s.limits);
+  f("materials", s.materials);
+  f("bodies", s.bodies);
+  f("joints", s.joints);
+  f("prefabs", s.prefabs);
+  f("seats", s.seats);
+}
+
+/// A part of a scene that has fields of its own.
+template <class T>
+concept HasFields = requires(T& t) { fields(t, [](const char*, auto&) {}); };
+
+}  // namespace cycloid::scenes

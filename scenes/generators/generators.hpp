@@ -1,0 +1,48 @@
+#pragma once
+
+#include "scenes/scene.hpp"
+
+namespace cycloid::scenes {
+
+/// Scenes made by rule. The files in catalogue/ are their exports; a test holds the two equal.
+/// Only + - * / and solver::sin_cos, so that a generated scene is the same on every machine.
+
+Scene half_pipe();
+/// @param base  boxes in the lowest row, 1 to 400: base (base + 1) / 2 in all.
+Scene pyramid(int base);
+Scene stack(int count);
+Scene card_house(int storeys);
+Scene newtons_cradle();
+Scene bridge(int planks);
+Scene ball_pit(int balls);
+Scene room(int bodies);
+
+// Parts that several of them use.
+
+SceneShape box_shape(float half_x, float half_y);
+SceneShape ball_shape(float radius);
+SceneBody ground();
+/// Gravity of 10 m/s^2 downwards and one material.
+Scene planar_scene(const char* name, const char* summary);
+/// A seat whose button 0 throws a heavy ball from `position` with `velocity`, by script at ticks 120,
+/// 360, ...; at most four at once.
+void add_thrower(Scene& scene, const Triple& position, const Triple& velocity);
+
+/// Uniform integers from a seed. Source: Steele, Lea and Flood, "Fast splittable pseudorandom number
+/// generators" (OOPSLA 2014): splitmix64.
+struct Random {
+  std::uint64_t state;
+  std::uint64_t next() {
+    state += 0x9e3779b97f4a7c15u;
+    std::uint64_t z = state;
+    z = (z ^ (z >> 30)) * 0xbf58476d1ce4e5b9u;
+    z = (z ^ (z >> 27)) * 0x94d049bb133111ebu;
+    return z ^ (z >> 31);
+  }
+  /// low + (high - low) k / 1000 for a k of 0 to 999.
+  float between(float low, float high) {
+    return low + (high - low) * (static_cast<float>(next() % 1000) / 1000.0f);
+  }
+};
+
+}  // namespace cycloid::scenes

@@ -1,0 +1,197 @@
+#include "scenes/simulation.hpp"
+
+#include <variant>
+
+#include "scenes/build.hpp"
+#include "scenes/controls.hpp"
+
+namespace cycloid::scenes {
+
+struct Simulation::Running {
+  std::variant<std::unique_ptr<Built<2>>, std::unique_ptr<Built<3>>> built;
+
+  /// Calls f with the `Built` of whichever dimension runs.
+  template <class F>
+  auto visit(F&& f) const {
+    return std::visit([&](const auto& pointer) { return f(*pointer); }, built);
+  }
+};
+
+struct Simulation::Saved::State {
+  solver::WorldState<2> planar;
+  solver::WorldState<3> spatial;
+};
+
+Simulation::Saved::Saved() : state_(std::make_unique<State>()) {}
+Simulation::Saved::~Saved() = default;
+Simulation::Saved::Saved(Saved&&) noexcept = default;
+Simulation::Saved& Simulation::Saved::operator=(Saved&&) noexcept = default;
+
+Simulation::Simulation(std::unique_ptr<Running> running) : running_(std::move(running)) {}
+Simulation::Simulation(Simulation&&) noexcept = default;
+Simulation& Simulation::operator=(Simulation&&) noexcept = default;
+Simulation::~Simulation() = default;
+
+solver::Result<Simulation> Simulation::create(const Scene& scene) {
+  std::vector<Mistake> mistakes;
+  auto running = std::make_unique<Running>();
+  bool good = false;
+  if (scene.dimension == 2) {
+    auto built = build<2>(scene, mistakes);
+    good = built != nullptr;
+    running->built = std::move(built);
+  } else if (scene.dimension == 3) {
+    auto built = build<3>(scene, mistakes);
+    good = built != nullptr;
+    running->built = std::move(built);
+  }
+  if (!good) return solver::Error{solver::Code::kInvalid, "scene"};
+  return Simulation(std::move(running));
+}
+
+int Simulation::dimension() const {
+  return std::holds_alternative<std::unique_ptr<Built<2>>>(running_->built) ? 2 : 3;
+}
+
+int Simulation::seats() const {
+  return running_->visit([](const auto& built) { return static_cast<int>(built.seats.size()); });
+}
+
+std::uint64_t Simulation::tick() const {
+  return running_->visit([](const auto& built) { return built.world.tick(); });
+}
+
+float Simulation::tick_s() const {
+  return running_->visit([](const auto& built) { return built.world.tick_s(); });
+}
+
+solver::Error Simulation::set_workers(int workers) {
+  return running_->visit([&](auto& built) { return built.world.set_workers(workers); });
+}
+
+solver::Error Simulation::step(std::span<const SeatInput> inputs) {
+  if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
+  return running_->visit([&](auto& built) {
+    if (!built.world.fault()) apply_controls(built, inputs);
+    return built.world.step();
+  });
+}
+
+std::uint64_t Simulation::digest() const {
+  return running_->visit([](const auto& built) { return built.world.digest(); });
+}
+
+std::optional<solver::Fault> Simulation::fault() const {
+  return running_->visit([](const auto& built) { return built.world.fault(); });
+}
+
+void Simulation::encode(std::vector<std::byte>& into) const {
+  running_->visit([&](const auto& built) { built.world.encode(into); });
+}
+
+/// How many registers the seats need; a snapshot with fewer is of another scene.
+template <int D>
+static std::uint32_t registers_of(const Built<D>& built) {
+  auto last = static_cast<std::uint32_t>(built.seats.size());
+  for (const BoundSeat& seat : built.seats)
+    for (const BoundControl& bound : seat.controls)
+      if (bound.control.effect == Effect::kSpawn)
+        last = bound.first_register + 1 + 2 * bound.control.limit;
+  return last;
+}
+
+/// The registers hold places in rings; a snapshot from outside may name one that is not there.
+template <int D>
+static bool registers_fit(const Built<D>& built) {
+  const auto registers = built.world.registers();
+  if (registers.size() != registers_of(built)) return false;
+  for (const BoundSeat& seat : built.seats)
+    for (const BoundControl& bound : seat.controls)
+      if (bound.control.effect == Effect::kSpawn &&
+          registers[bound.first_register] >= bound.control.limit)
+        return false;
+  return true;
+}
+
+solver::Error Simulation::decode(std::span<const std::byte> bytes) {
+  return running_->visit([&](auto& built) {
+    const auto before = built.world.state();
+    const solver::Error error = built.world.decode(bytes);
+    if (!error.ok() || registers_fit(built)) return error;
+    built.world.restore(before);
+    return solver::Error{solver::Code::kCorrupt, "registers"};
+  });
+}
+
+solver::Statistics Simulation::statistics() const {
+  return running_->visit([](const auto& built) { return built.world.statistics(); });
+}
+
+/// The quaternion about z of a planar rotation: half of its angle.
+static std::array<float, 4> quaternion_of(const solver::Rotation<2>& q) {
+  const float w = solver::sqrt(solver::max(0.0f, 0.5f * (1.0f + q[0])));
+  const float z = w > 1.0e-6f ? 0.5f * q[1] / w : 1.0f;
+  return {0.0f, 0.0f, z, w};
+}
+static std::array<float, 4> quaternion_of(const solver::Rotation<3>& q) {
+  return {q[0], q[1], q[2], q[3]};
+}
+
+template <int D>
+static Pose pose_of(const solver::BodyView<D>& body) {
+  Pose pose;
+  pose.index = body.id.index;
+  pose.generation = body.id.generation;
+  for (int i = 0; i < D; ++i) pose.position[static_cast<std::size_t>(i)] = body.position[i];
+  pose.rotation = quaternion_of(body.rotation);
+  return pose;
+}
+
+std::vector<Pose> Simulation::poses() const {
+  return running_->visit([](const auto& built) {
+    std::vector<Pose> poses;
+    for (const auto& body : built.world.bodies()) poses.push_back(pose_of(body));
+    return poses;
+  });
+}
+
+std::vector<solver::Difference> Simulation::differences(const Simulation& other,
+                                                        std::size_t limit) const {
+  if (dimension() != other.dimension())
+    return {{"world", "dimension", std::to_string(dimension()), std::to_string(other.dimension())}};
+  return running_->visit([&](const auto& built) {
+    using Same = std::remove_cvref_t<decltype(built)>;
+    const auto& there = *std::get<std::unique_ptr<Same>>(other.running_->built);
+    return solver::differences(built.world.state(), there.world.state(), limit);
+  });
+}
+
+solver::World<2>* Simulation::planar() {
+  return dimension() == 2 ? &std::get<0>(running_->built)->world : nullptr;
+}
+solver::World<3>* Simulation::spatial() {
+  return dimension() == 3 ? &std::get<1>(running_->built)->world : nullptr;
+}
+
+static solver::WorldState<2>& part_of(solver::WorldState<2>& planar, solver::WorldState<3>&,
+                                      const Built<2>&) {
+  return planar;
+}
+static solver::WorldState<3>& part_of(solver::WorldState<2>&, solver::WorldState<3>& spatial,
+                                      const Built<3>&) {
+  return spatial;
+}
+
+void Simulation::save(Saved& into) const {
+  running_->visit([&](const auto& built) {
+    built.world.save(part_of(into.state_->planar, into.state_->spatial, built));
+  });
+}
+
+void Simulation::restore(const Saved& from) {
+  running_->visit([&](auto& built) {
+    built.world.restore(part_of(from.state_->planar, from.state_->spatial, built));
+  });
+}
+
+}  // namespace cycloid::scenes

@@ -1,0 +1,115 @@
+#ifdef CYCLOID_NETWORK
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include "tests/cli/program.hpp"
+
+namespace cycloid::cli {
+namespace {
+
+using testing::HasSubstr;
+
+TEST(Demo, ServerClientsAndReplayAgree) {
+  const Folder folder;
+  const std::string log = folder.file("demo.cylog");
+  const Ran ran = run_program({"demo", "half-pipe", "--seconds", "1.5", "--log", log, "--json"});
+  ASSERT_EQ(ran.exit, 0) << ran.err << ran.out;
+  const nlohmann::json report = ran.json();
+  EXPECT_EQ(report["equal"], true);
+  ASSERT_EQ(report["parts"].size(), 5u);
+  for (const nlohmann::json& part : report["parts"]) {
+    EXPECT_EQ(part["tick"], report["ticks"]) << part;
+    EXPECT_EQ(part["digest"], report["parts"][0]["digest"]) << part;
+  }
+  EXPECT_EQ(run_program({"verify", log}).exit, 0);
+}
+
+TEST(Demo, ReplacesAnOlderLogAndNothingElse) {
+  const Folder folder;
+  const std::string file = folder.file("demo.cylog");
+  run_program({"run", "half-pipe", "--ticks", "1", "--log", file});
+  const Ran text = run_program({"demo", "half-pipe", "--seconds", "0.5", "--log", file});
+  EXPECT_EQ(text.exit, 0) << text.err << text.out;
+  EXPECT_THAT(text.out, HasSubstr("all equal\n"));
+  write_text(file, "a letter");
+  EXPECT_EQ(run_program({"demo", "half-pipe", "--seconds", "0.5", "--log", file}).exit, 2);
+  EXPECT_EQ(read_text(file), "a letter");
+}
+
+TEST(Demo, SaysWhichPartFailed) {
+  const Ran ran = run_program({"demo", "half-pipe", "--seconds", "0.5", "--log", "/nowhere/x"});
+  EXPECT_EQ(ran.exit, 5) << ran.out;
+  EXPECT_THAT(ran.err, HasSubstr("server ended with 5"));
+}
+
+TEST(Demo, ForeverEndsByASignalWithAllInAgreement) {
+  const Folder folder;
+  Background demo({"demo", "half-pipe", "--forever", "--log", folder.file("a.cylog"), "--json"});
+  const std::string address = demo.wait_for("serving half-pipe on ");
+  ASSERT_NE(address, "");
+  const Ran visit =
+      run_program({"join", address, "half-pipe", "--seat", "spectator", "--ticks", "40", "--json"});
+  EXPECT_EQ(visit.exit, 0) << visit.err;
+  demo.ask_to_stop();
+  const Ran ran = demo.wait();
+  EXPECT_EQ(ran.exit, 0) << ran.err << ran.out;
+  EXPECT_EQ(ran.json()["equal"], true);
+}
+
+/// A server beside the test.
+class Serve : public testing::Test {
+ protected:
+  Serve() : server_({"serve", "half-pipe", "--port", "0", "--json"}) {
+    address_ = server_.wait_for("listening on ");
+  }
+  Background server_;
+  std::string address_;
+};
+
+TEST_F(Serve, DrainsByASignalAndReports) {
+  ASSERT_NE(address_, "");
+  const Ran visit = run_program({"join", address_, "half-pipe", "--ticks", "30", "--json"});
+  EXPECT_EQ(visit.exit, 0) << visit.err;
+  EXPECT_EQ(visit.json()["end"], "ticks");
+  EXPECT_GE(visit.json()["frames"], 30);
+  server_.ask_to_stop();
+  const Ran ran = server_.wait();
+  EXPECT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.json()["end"], "drained");
+  EXPECT_EQ(ran.json()["clients"], 1);
+}
+
+TEST_F(Serve, AnotherSceneIsIncompatible) {
+  const Ran ran = run_program({"join", address_, "stack-10"});
+  EXPECT_EQ(ran.exit, 4) << ran.err;
+}
+
+TEST_F(Serve, NoSuchSeatIsUsage) {
+  const Ran ran = run_program({"join", address_, "half-pipe", "--seat", "200"});
+  EXPECT_EQ(ran.exit, 2) << ran.err;
+}
+
+TEST_F(Serve, PortThatIsTakenIsAnInputOutputError) {
+  const std::string port = address_.substr(address_.rfind(':') + 1);
+  const Ran ran = run_program({"serve", "half-pipe", "--port", port});
+  EXPECT_EQ(ran.exit, 5);
+  EXPECT_NE(ran.err, "");
+}
+
+TEST(Join, BadArgumentsAreUsage) {
+  EXPECT_EQ(run_program({"join", "nowhere", "half-pipe"}).exit, 2);
+  EXPECT_EQ(run_program({"join", "127.0.0.1:0", "half-pipe"}).exit, 2);
+  EXPECT_EQ(run_program({"join", "127.0.0.1:1", "half-pipe", "--seat", "first"}).exit, 2);
+}
+
+TEST(Join, NobodyThereIsAnInputOutputError) {
+  const Ran ran = run_program({"join", "127.0.0.1:1", "half-pipe", "--json"});
+  EXPECT_EQ(ran.exit, 5);
+  EXPECT_EQ(ran.json()["end"], "disconnected");
+}
+
+}  // namespace
+}  // namespace cycloid::cli
+
+#endif  // CYCLOID_NETWORK

@@ -1,0 +1,176 @@
+#include <gtest/gtest.h>
+
+#include <fstream>
+#include <iomanip>
+#include <map>
+#include <sstream>
+
+#include "scenes/catalogue.hpp"
+#include "scenes/simulation.hpp"
+
+namespace cycloid::scenes {
+
+/// Every scene of the catalogue with its own script, by name.
+class Catalogue : public testing::TestWithParam<std::string> {
+ protected:
+  Scene scene() const {
+    Loaded loaded = find(GetParam());
+    EXPECT_TRUE(loaded.scene.has_value()) << GetParam();
+    return std::move(*loaded.scene);
+  }
+};
+
+Simulation start(const Scene& scene) {
+  solver::Result<Simulation> simulation = Simulation::create(scene);
+  EXPECT_TRUE(simulation.ok()) << simulation.error().field;
+  return std::move(simulation.value());
+}
+
+void step(const Scene& scene, Simulation& simulation) {
+  std::vector<SeatInput> inputs;
+  for (int seat = 0; seat < simulation.seats(); ++seat)
+    inputs.push_back(scripted_input(scene, seat, simulation.tick() + 1));
+  const solver::Error error = simulation.step(inputs);
+  ASSERT_TRUE(error.ok()) << error.field << " at tick " << simulation.tick() + 1;
+}
+
+void set_lanes(Simulation& simulation, int lanes) {
+  const solver::Error error = simulation.planar() != nullptr
+                                  ? simulation.planar()->set_lanes(lanes)
+                                  : simulation.spatial()->set_lanes(lanes);
+  ASSERT_TRUE(error.ok());
+}
+
+std::string hex(std::uint64_t digest) {
+  std::ostringstream text;
+  text << std::hex << std::setw(16) << std::setfill('0') << digest;
+  return text.str();
+}
+
+/// goldens.txt: "scene tick digest" per line. It holds on every target; a commit that changes the
+/// arithmetic replaces it, raises kSolverVersion and says why.
+std::map<std::string, std::map<int, std::string>> read_goldens() {
+  std::ifstream file(CYCLOID_SOURCE_DIR "/tests/determinism/goldens.txt");
+  std::map<std::string, std::map<int, std::string>> goldens;
+  std::string name;
+  int tick = 0;
+  std::string digest;
+  while (file >> name >> tick >> digest) goldens[name][tick] = digest;
+  return goldens;
+}
+
+TEST_P(Catalogue, DigestsAreTheGoldens) {
+  const auto goldens = read_goldens();
+  const Scene scene = this->scene();
+  Simulation simulation = start(scene);
+  std::map<int, std::string> now;
+  for (int tick = 1; tick <= 600; ++tick) {
+    step(scene, simulation);
+    if (tick == 1 || tick == 10 || tick == 100 || tick == 600) now[tick] = hex(simulation.digest());
+  }
+  const auto golden = goldens.find(GetParam());
+  std::ostringstream rows;
+  for (const auto& [tick, digest] : now) rows << GetParam() << ' ' << tick << ' ' << digest << '\n';
+  ASSERT_TRUE(golden != goldens.end()) << "no golden; now:\n" << rows.str();
+  EXPECT_EQ(golden->second, now) << "now:\n" << rows.str();
+}
+
+// Two worlds side by side, compared after every tick, so that a failure names the first bad one.
+TEST_P(Catalogue, WorkersAndLanesAreInvisible) {
+  struct Setting {
+    int workers;
+    int lanes;
+  };
+  const Scene scene = this->scene();
+  for (const Setting setting : {Setting{2, 4}, Setting{3, 1}, Setting{1, 8}, Setting{8, 16}}) {
+    Simulation one = start(scene);
+    Simulation other = start(scene);
+    set_lanes(one, 4);
+    set_lanes(other, setting.lanes);
+    ASSERT_TRUE(other.set_workers(setting.workers).ok());
+    for (int tick = 1; tick <= 60; ++tick) {
+      step(scene, one);
+      step(scene, other);
+      ASSERT_EQ(one.digest(), other.digest())
+          << "tick " << tick << ", workers " << setting.workers << ", lanes " << setting.lanes;
+    }
+  }
+}
+
+TEST_P(Catalogue, RestoredAtEveryTenthTickFromMemoryAndFromBytesItGoesOnAsItWas) {
+  constexpr int kEnd = 120;
+  const Scene scene = this->scene();
+  Simulation simulation = start(scene);
+  std::vector<std::uint64_t> digests = {simulation.digest()};
+  std::vector<Simulation::Saved> saved;
+  std::vector<std::vector<std::byte>> encoded;
+  for (int tick = 0; tick < kEnd; ++tick) {
+    if (tick % 10 == 0) {
+      simulation.save(saved.emplace_back());
+      simulation.encode(encoded.emplace_back());
+    }
+    step(scene, simulation);
+    digests.push_back(simulation.digest());
+  }
+  for (std::size_t i = 0; i < saved.size(); ++i) {
+    // From memory into the world that has run to its end; from bytes into one that never ran.
+    simulation.restore(saved[i]);
+    Simulation fresh = start(scene);
+    ASSERT_TRUE(fresh.decode(encoded[i]).ok());
+    for (std::size_t tick = 10 * i;; ++tick) {
+      ASSERT_EQ(simulation.digest(), digests[tick]) << "memory, from " << 10 * i << " at " << tick;
+      ASSERT_EQ(fresh.digest(), digests[tick]) << "bytes, from " << 10 * i << " at " << tick;
+      if (tick == kEnd) break;
+      step(scene, simulation);
+      step(scene, fresh);
+    }
+  }
+}
+
+TEST_P(Catalogue, EncodingIsExactAndStable) {
+  const Scene scene = this->scene();
+  Simulation simulation = start(scene);
+  for (int tick = 0; tick < 30; ++tick) step(scene, simulation);
+  std::vector<std::byte> bytes;
+  simulation.encode(bytes);
+  Simulation other = start(scene);
+  ASSERT_TRUE(other.decode(bytes).ok());
+  std::vector<std::byte> again;
+  other.encode(again);
+  EXPECT_EQ(bytes, again);
+  EXPECT_TRUE(simulation.differences(other, 10).empty());
+}
+
+// A world that is moved, and one that lives beside others, is the same world.
+TEST_P(Catalogue, OtherWorldsAndMovesAreInvisible) {
+  const Scene scene = this->scene();
+  Simulation alone = start(scene);
+  Simulation beside = start(scene);
+  std::vector<Simulation> others;
+  for (int tick = 0; tick < 30; ++tick) {
+    if (tick % 10 == 0) others.push_back(start(scene));
+    for (Simulation& other : others) step(scene, other);
+    step(scene, alone);
+    Simulation moved = std::move(beside);
+    step(scene, moved);
+    beside = std::move(moved);
+    ASSERT_EQ(alone.digest(), beside.digest()) << "tick " << tick;
+  }
+}
+
+std::vector<std::string> names() {
+  std::vector<std::string> names;
+  for (const CatalogueEntry& entry : catalogue()) names.push_back(entry.name);
+  return names;
+}
+
+std::string test_name(const testing::TestParamInfo<std::string>& info) {
+  std::string name = info.param;
+  for (char& c : name)
+    if (c == '-' || c == ':' || c == '=') c = '_';
+  return name;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Catalogue, testing::ValuesIn(names()), test_name);
+
+}  // namespace cycloid::scenes

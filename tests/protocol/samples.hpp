@@ -1,0 +1,90 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "protocol/codec.hpp"
+#include "protocol/log_format.hpp"
+#include "protocol/messages.hpp"
+
+namespace cycloid::protocol::samples {
+
+inline Hello hello() {
+  Hello hello;
+  hello.protocol_version = 1;
+  hello.solver_version = 7;
+  hello.scene_digest = 0x1122334455667788;
+  hello.mode = Mode::kSnapshot;
+  hello.seat_wish = 3;
+  hello.name = "Grüße";
+  return hello;
+}
+
+inline InputFrame frame(std::uint64_t tick) {
+  InputFrame frame;
+  frame.tick = tick;
+  frame.seats = {{Origin::kGiven, {{1, -2, 32767, -32768}, 0xbeef}},
+                 {Origin::kRepeated, {{5, 6, 7, 8}, 1}},
+                 {Origin::kAbsent, {}}};
+  frame.events = {{EventKind::kJoin, 0}, {EventKind::kLeave, 2}};
+  return frame;
+}
+
+/// Each message a client has, with a value in every field.
+inline std::vector<ClientMessage> client_messages() {
+  return {hello(), Input{9, {{1, -2, 32767, -32768}, 0x8001}}, Digest{11, 0xfedcba9876543210},
+          Ping{12}, Bye{"gone home"}};
+}
+
+/// Each message a server has, with a value in every field.
+inline std::vector<ServerMessage> server_messages() {
+  const std::vector<std::byte> state(37, std::byte{0x5a});
+  return {Welcome{1, 4, 100, 59940, 3},
+          Refused{Refusal::kSeatTaken, "seat 1"},
+          frame(101),
+          Snapshot{102, 0xabcdef, state},
+          Digest{103, 5},
+          Pong{104, 105},
+          Bye{"the end"}};
+}
+
+inline std::span<const std::byte> payload_of(const Bytes& message) {
+  return std::span<const std::byte>(message).subspan(Framer::kPrefixBytes);
+}
+
+inline LogHeader log_header(std::uint64_t salt = 0x5a17) {
+  LogHeader header;
+  header.scene_digest = 0x77;
+  header.salt = salt;
+  header.scene_name = "two balls";
+  header.scene.assign(21, std::byte{0x33});
+  return header;
+}
+
+/// The bytes of a log and where each of its records ends; the first is the header, the last the
+/// footer.
+struct LogSample {
+  Bytes bytes;
+  std::vector<std::size_t> ends;
+};
+
+inline LogTick log_tick(std::uint64_t tick) {
+  return {frame(tick), 1000 + tick};
+}
+
+inline LogSample log_sample(std::uint64_t ticks, std::uint64_t salt = 0x5a17) {
+  LogSample sample;
+  LogEncoder encoder(log_header(salt), sample.bytes);
+  sample.ends.push_back(sample.bytes.size());
+  for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
+    encoder.tick(log_tick(tick), sample.bytes);
+    sample.ends.push_back(sample.bytes.size());
+  }
+  encoder.footer({ticks, 1000 + ticks}, sample.bytes);
+  sample.ends.push_back(sample.bytes.size());
+  return sample;
+}
+
+}  // namespace cycloid::protocol::samples
