@@ -1,3 +1,4 @@
+#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -16,6 +17,7 @@ struct RunOptions {
   std::uint64_t digest_every = 60;
   int workers = 1;
   std::string log;
+  std::string poses;
 };
 
 /// The frame that a server would make of a full house that says what the script says.
@@ -30,11 +32,38 @@ protocol::InputFrame scripted_frame(const scenes::Scene& scene, int seats, std::
   return frame;
 }
 
+/// A row per body and tick, for plots. Positions in m, rotations as quaternions.
+class PoseTable {
+ public:
+  explicit PoseTable(const std::string& file) : file_(file), stream_(file) {
+    stream_ << "tick,body,x,y,z,qx,qy,qz,qw\n";
+  }
+  void add(const scenes::Simulation& simulation) {
+    for (const scenes::Pose& pose : simulation.poses()) {
+      stream_ << simulation.tick() << ',' << pose.index;
+      for (const float value : pose.position) stream_ << ',' << value;
+      for (const float value : pose.rotation) stream_ << ',' << value;
+      stream_ << '\n';
+    }
+  }
+  void finish() {
+    stream_.flush();
+    if (!stream_) throw Failure(kExitIo, file_ + ": cannot be written");
+  }
+
+ private:
+  std::string file_;
+  std::ofstream stream_;
+};
+
 Exit run_scene(const RunOptions& options, bool json) {
   const scenes::Scene scene = load_scene(options.scene);
   scenes::Simulation simulation = make_simulation(scene, options.workers);
   std::optional<LogWriter> log;
   if (!options.log.empty()) log.emplace(options.log, scene);
+
+  std::optional<PoseTable> poses;
+  if (!options.poses.empty()) poses.emplace(options.poses).add(simulation);
 
   Json digests = Json::array();
   std::vector<scenes::SeatInput> inputs;
@@ -47,6 +76,7 @@ Exit run_scene(const RunOptions& options, bool json) {
                                        std::to_string(tick) + ": " + error_text(error));
     }
     if (log) log->tick({frame, simulation.digest()});
+    if (poses) poses->add(simulation);
     const bool wanted = options.digest_every != 0 && tick % options.digest_every == 0;
     if (!wanted && tick != options.ticks) continue;
     const std::string digest = hex16(simulation.digest());
@@ -54,6 +84,7 @@ Exit run_scene(const RunOptions& options, bool json) {
     if (!json) std::cout << tick << ' ' << digest << '\n';
   }
   if (log) log->finish({options.ticks, simulation.digest()});
+  if (poses) poses->finish();
   if (json) {
     print_json({{"scene", scene.name},
                 {"scene_digest", hex16(scenes::scene_digest(scene))},
@@ -82,6 +113,7 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   command->add_option("--log", options->log, "Write a log of the run to this file");
+  command->add_option("--poses", options->poses, "Write every body's pose at every tick as CSV");
   command->callback([options, &action] {
     action.run = [=, &action] { return run_scene(*options, action.json); };
   });

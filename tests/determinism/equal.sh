@@ -44,7 +44,8 @@ for row in "${rows[@]}"; do
   run_row "$name" >"$folder/$name.digests"
   verdict=yes
   if ! cmp -s "$folder/gcc-O3.digests" "$folder/$name.digests"; then
-    verdict="NO: $(diff "$folder/gcc-O3.digests" "$folder/$name.digests" | sed -n 2p)"
+    difference=$({ diff "$folder/gcc-O3.digests" "$folder/$name.digests" || true; } | sed -n 2p)
+    verdict="NO: $difference"
     status=1
   fi
   printf '%-16s %8d %8d  %s\n' "$name" "$((SECONDS - start))" \
