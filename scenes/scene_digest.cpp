@@ -37,7 +37,7 @@ struct MeaningWriter {
   template <HasFields Part>
   void write(const Part& part) {
     Part copy = part;
-    fields(copy, [this](const char*, auto& field) { write(field); });
+    fields(copy, [this](const char*, auto& field) { this->write(field); });
   }
 };
 

@@ -69,12 +69,14 @@ void Connection::take(std::size_t bytes) {
   bytes_in_ += bytes;
   if (stage_ == Stage::kFinishing) return;
   since_ = Clock::now();
-  if (!framer_.feed(std::span<const std::byte>(incoming_).first(bytes))) {
-    return close("a message of " + std::to_string(framer_.announced_bytes()) +
-                 " bytes, of at most " + std::to_string(protocol::kServerMessageBytesMax));
-  }
+  // A bad size behind good messages shows only once these are taken out.
+  (void)framer_.feed(std::span<const std::byte>(incoming_).first(bytes));
   while (stage_ == Stage::kOpen) {
     const auto payload = framer_.next();
+    if (!payload && framer_.broken()) {
+      return close("a message of " + std::to_string(framer_.announced_bytes()) +
+                   " bytes, of at most " + std::to_string(protocol::kServerMessageBytesMax));
+    }
     if (!payload) return;
     const auto decoded = protocol::decode_server(*payload);
     if (!decoded.message) return close("not a message: " + decoded.error);

@@ -27,7 +27,7 @@ def main(scene_file, poses_file, out_file):
             point = (float(row["x"]), float(row["y"]))
             tracks.setdefault(int(row["body"]), []).append(point)
 
-    figure, axes = plt.subplots(figsize=(10, 3.6))
+    figure, axes = plt.subplots(figsize=(10, 3.2))
     for body in scene["bodies"]:
         for shape in body.get("shapes", []):
             if shape.get("kind") == "chain":
@@ -44,9 +44,9 @@ def main(scene_file, poses_file, out_file):
     axes.set_ylim(-0.3, 4.0)
     axes.set_xlabel("m")
     axes.set_ylabel("m")
-    axes.set_title("half-pipe: both riders start at 2.75 m; a dot every 0.2 s", fontsize=10)
+    axes.set_title("half-pipe: both riders start at rest at 2.6 m; a dot every 0.2 s", fontsize=10)
     axes.spines[["top", "right"]].set_visible(False)
-    axes.legend(frameon=False, loc="upper center")
+    axes.legend(frameon=False, loc="upper center", bbox_to_anchor=(0.423, 0.75))
     figure.tight_layout()
     figure.savefig(out_file, metadata={"Date": None})
 

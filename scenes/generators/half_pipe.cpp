@@ -5,6 +5,8 @@ namespace cycloid::scenes {
 
 static constexpr int kEdges = 128;
 static constexpr float kHeight = 3.0f;  ///< m, from rim to bottom, of both ramps.
+static constexpr float kRider = 0.3f;   ///< m, radius.
+static constexpr float kStart = 2.6f;   ///< m, height of the riders' centres at the start.
 
 static SceneShape chain_of(std::vector<Triple> points) {
   SceneShape shape;
@@ -44,12 +46,46 @@ static std::vector<Triple> cycloid(float centre_x) {
   return points;
 }
 
+struct Place {
+  float x;
+  float y;
+};
+
+/// Where a rider's centre is while it touches the circle, seen from the ramp's middle.
+static Place on_circle(float height) {
+  const float radius = kHeight - kRider;
+  const float below = kHeight - height;
+  return {-solver::sqrt(radius * radius - below * below), height};
+}
+
+/// The same on the cycloid: the curve at t, and from there the rider's radius along the normal
+/// (cos t/2, sin t/2). The height falls as t grows, so halving finds it.
+static Place on_cycloid(float height) {
+  const float r = 0.5f * kHeight;
+  float low = 0.2f;
+  float high = 3.0f;
+  Place place{};
+  for (int i = 0; i < 40; ++i) {
+    const float t = 0.5f * (low + high);
+    float sine = 0.0f;
+    float cosine = 0.0f;
+    float half_sine = 0.0f;
+    float half_cosine = 0.0f;
+    solver::sin_cos(t, sine, cosine);
+    solver::sin_cos(0.5f * t, half_sine, half_cosine);
+    place = {r * (t - sine) + kRider * half_cosine - r * solver::kPi,
+             r * (1.0f + cosine) + kRider * half_sine};
+    (place.y > height ? low : high) = t;
+  }
+  return place;
+}
+
 static SceneBody rider(const char* name, float x, float y) {
   SceneBody body;
   body.name = name;
   body.position = {x, y, 0.0f};
   body.mass = 80.0f;
-  body.shapes.push_back(ball_shape(0.3f));
+  body.shapes.push_back(ball_shape(kRider));
   body.shapes[0].material = "wheels";
   return body;
 }
@@ -100,9 +136,11 @@ Scene half_pipe() {
   ramps.shapes.push_back(chain_of(circle(circle_x)));
   ramps.shapes.push_back(chain_of(cycloid(cycloid_x)));
   scene.bodies.push_back(ramps);
-  // Both start at the same height, at rest against the ramp or just above it.
-  scene.bodies.push_back(rider("circle", circle_x - 2.55f, 2.75f));
-  scene.bodies.push_back(rider("cycloid", cycloid_x - 3.85f, 2.75f));
+  // Both start at the same height, at rest on their ramp.
+  const Place circle_start = on_circle(kStart);
+  const Place cycloid_start = on_cycloid(kStart);
+  scene.bodies.push_back(rider("circle", circle_x + circle_start.x, circle_start.y));
+  scene.bodies.push_back(rider("cycloid", cycloid_x + cycloid_start.x, cycloid_start.y));
   scene.seats.push_back(seat_of("circle", 0));
   scene.seats.push_back(seat_of("cycloid", 0));
   return scene;
