@@ -5,8 +5,8 @@ namespace cycloid::scenes {
 
 static constexpr std::size_t kBinaryBytesMax = 64u << 20;
 
-/// Copies verified tables. A hostile buffer may let many offsets share one string or vector; what is
-/// copied out of it is therefore bounded by its own size, which an honest buffer never exceeds.
+/// Copies verified tables. A hostile buffer may let many offsets share one string or vector; what
+/// is copied out of it is therefore bounded by its own size, which an honest buffer never exceeds.
 class BinaryReader {
  public:
   explicit BinaryReader(std::size_t bytes) : budget_(bytes) {}

@@ -31,12 +31,16 @@ static std::string at(const std::string& path, std::size_t i) {
 /// A sentence for an error of the solver about a field.
 static std::string reason_of(const Error& error) {
   switch (error.code) {
-    case solver::Code::kCapacity: return std::string("exceeds ") + error.field;
-    case solver::Code::kUnknownId: return "names no body";
-    default: break;
+    case solver::Code::kCapacity:
+      return std::string("exceeds ") + error.field;
+    case solver::Code::kUnknownId:
+      return "names no body";
+    default:
+      break;
   }
   const std::string_view field = error.field;
-  if (field == "points") return "has to be a convex outline without repeated points, in the right number";
+  if (field == "points")
+    return "has to be a convex outline without repeated points, in the right number";
   if (field == "radius") return "has to be positive and finite";
   if (field == "mass") return "has to be positive, or the shapes have to give it";
   if (field == "rotation" || field == "normal") return "has to have length 1";
@@ -129,7 +133,8 @@ class Builder {
       def.filter = shape.filter;
       def.material = material_index(shape.material);
       if (def.material != solver::kNone) continue;
-      complain(at(path + "/shapes", i) + "/material", "names no material: '" + shape.material + "'");
+      complain(at(path + "/shapes", i) + "/material",
+               "names no material: '" + shape.material + "'");
       return false;
     }
     return true;
@@ -158,8 +163,10 @@ class Builder {
 
   bool find_body(const std::string& name, const std::string& path, solver::BodyId& id) {
     const auto found = bodies_.find(name);
-    if (found != bodies_.end()) id = found->second;
-    else complain(path, "names no body: '" + name + "'");
+    if (found != bodies_.end())
+      id = found->second;
+    else
+      complain(path, "names no body: '" + name + "'");
     return found != bodies_.end();
   }
 
@@ -244,7 +251,8 @@ class Builder {
         registers_ += 1 + 2 * control.limit;
         break;
       }
-      default: return complain(path + "/effect", "is unknown");
+      default:
+        return complain(path + "/effect", "is unknown");
     }
     seat.controls.push_back(std::move(bound));
   }

@@ -73,8 +73,8 @@ static Loaded generate(const Generator& generator, std::string_view setting) {
   const auto [end, error] = std::from_chars(digits.data(), digits.data() + digits.size(), value);
   const bool whole = error == std::errc() && end == digits.data() + digits.size();
   if (!whole || value < generator.least || value > generator.most)
-    return mistake("'" + std::string(digits) + "' is out of range; " +
-                   std::string(generator.name) + " takes " + wanted);
+    return mistake("'" + std::string(digits) + "' is out of range; " + std::string(generator.name) +
+                   " takes " + wanted);
   return checked(generator.make(value));
 }
 

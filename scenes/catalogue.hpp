@@ -21,8 +21,8 @@ struct Loaded {
 };
 
 struct CatalogueEntry {
-  std::string name;     ///< "half-pipe"
-  std::string summary;  ///< One sentence.
+  std::string name;        ///< "half-pipe"
+  std::string summary;     ///< One sentence.
   std::string parameters;  ///< "base=20 (1 to 400)", or "".
 };
 
@@ -32,8 +32,8 @@ std::vector<CatalogueEntry> catalogue();
 /// A built-in scene by name, with parameters where it has some: "half-pipe", "pyramid:base=100".
 Loaded find(std::string_view name);
 
-/// What the rules behind the catalogue make today: the files in catalogue/ are exports of these, and a
-/// test holds the two equal.
+/// What the rules behind the catalogue make today: the files in catalogue/ are exports of these,
+/// and a test holds the two equal.
 std::vector<Scene> generated_defaults();
 
 /// A file: JSON by its first character '{', else the binary form.

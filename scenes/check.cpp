@@ -61,8 +61,10 @@ std::vector<Mistake> check(const Scene& scene) {
     for (std::size_t e = 0; e < scene.seats[s].script.size(); ++e)
       check_script(scene.seats[s].script[e], path + "/script/" + std::to_string(e), mistakes);
   }
-  if (scene.dimension == 2) build<2>(scene, mistakes);
-  else build<3>(scene, mistakes);
+  if (scene.dimension == 2)
+    build<2>(scene, mistakes);
+  else
+    build<3>(scene, mistakes);
   return mistakes;
 }
 

@@ -83,7 +83,8 @@ static void apply(Built<D>& built, const BoundControl& bound, float amount, bool
     case Effect::kSpawn:
       if (pressed) spawn(built, bound);
       break;
-    default: break;
+    default:
+      break;
   }
 }
 

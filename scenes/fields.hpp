@@ -8,16 +8,18 @@
 
 namespace cycloid::scenes {
 
-/// The fields of each part of a scene by name, once: the JSON reader, the JSON writer and the digest
-/// of a scene's meaning walk these. `f(name, field)` is called for each.
+/// The fields of each part of a scene by name, once: the JSON reader, the JSON writer and the
+/// digest of a scene's meaning walk these. `f(name, field)` is called for each.
 
 template <class T>
 struct Names;
 template <>
 struct Names<solver::ShapeKind> {
   static constexpr std::pair<std::string_view, solver::ShapeKind> kAll[] = {
-      {"ball", solver::ShapeKind::kBall},       {"half_space", solver::ShapeKind::kHalfSpace},
-      {"capsule", solver::ShapeKind::kCapsule}, {"polygon", solver::ShapeKind::kPolygon},
+      {"ball", solver::ShapeKind::kBall},
+      {"half_space", solver::ShapeKind::kHalfSpace},
+      {"capsule", solver::ShapeKind::kCapsule},
+      {"polygon", solver::ShapeKind::kPolygon},
       {"chain", solver::ShapeKind::kChain}};
 };
 template <>
@@ -198,6 +200,8 @@ void fields(Scene& s, F&& f) {
 
 /// A part of a scene that has fields of its own.
 template <class T>
-concept HasFields = requires(T& t) { fields(t, [](const char*, auto&) {}); };
+concept HasFields = requires(T& t) {
+  fields(t, [](const char*, auto&) {});
+};
 
 }  // namespace cycloid::scenes

@@ -62,8 +62,8 @@ class JsonReader {
           return edit_distance(key, a) < edit_distance(key, b);
         });
     const bool close = edit_distance(key, *nearest) <= 1 + key.size() / 4;
-    complain(path_ + "/" + key, close ? "is not a field here; is '" + *nearest + "' meant?"
-                                      : "is not a field here");
+    complain(path_ + "/" + key,
+             close ? "is not a field here; is '" + *nearest + "' meant?" : "is not a field here");
   }
 
   void read(const Json& json, const std::string& path, float& field) {
@@ -75,16 +75,16 @@ class JsonReader {
   }
 
   template <class Integer>
-    requires std::is_integral_v<Integer> && (!std::is_same_v<Integer, bool>)
-  void read(const Json& json, const std::string& path, Integer& field) {
+  requires std::is_integral_v<Integer> &&
+      (!std::is_same_v<Integer, bool>)void read(const Json& json, const std::string& path,
+                                                Integer& field) {
     if (!json.is_number_integer()) return complain(path, "has to be a whole number");
-    const bool fits =
-        json.is_number_unsigned()
-            ? json.get<std::uint64_t>() <=
-                  static_cast<std::uint64_t>(std::numeric_limits<Integer>::max())
-            : std::is_signed_v<Integer> &&
-                  json.get<std::int64_t>() >=
-                      static_cast<std::int64_t>(std::numeric_limits<Integer>::min());
+    const bool fits = json.is_number_unsigned()
+                          ? json.get<std::uint64_t>() <=
+                                static_cast<std::uint64_t>(std::numeric_limits<Integer>::max())
+                          : std::is_signed_v<Integer> &&
+                                json.get<std::int64_t>() >=
+                                    static_cast<std::int64_t>(std::numeric_limits<Integer>::min());
     if (!fits) return complain(path, "is out of range");
     field = json.get<Integer>();
   }
@@ -100,7 +100,7 @@ class JsonReader {
   }
 
   template <class Enum>
-    requires std::is_enum_v<Enum>
+  requires std::is_enum_v<Enum>
   void read(const Json& json, const std::string& path, Enum& field) {
     std::string allowed;
     for (const auto& [name, value] : Names<Enum>::kAll) {

@@ -18,16 +18,22 @@ static double shortest(float value) {
   return result;
 }
 
-static Json json_of(float value) { return shortest(value); }
-static Json json_of(bool value) { return value; }
-static Json json_of(const std::string& value) { return value; }
+static Json json_of(float value) {
+  return shortest(value);
+}
+static Json json_of(bool value) {
+  return value;
+}
+static Json json_of(const std::string& value) {
+  return value;
+}
 template <class Integer>
-  requires std::is_integral_v<Integer>
+requires std::is_integral_v<Integer>
 static Json json_of(Integer value) {
   return value;
 }
 template <class Enum>
-  requires std::is_enum_v<Enum>
+requires std::is_enum_v<Enum>
 static Json json_of(Enum value) {
   for (const auto& [name, known] : Names<Enum>::kAll)
     if (known == value) return std::string(name);

@@ -38,10 +38,10 @@ struct SceneBody {
   std::string name;  ///< Needed only where a joint or a control refers to it.
   solver::BodyKind kind = solver::BodyKind::kDynamic;
   Triple position{};
-  float angle = 0.0f;                             ///< rad, in the plane.
-  std::array<float, 4> rotation{0, 0, 0, 1.0f};   ///< Quaternion x, y, z, w, in space.
+  float angle = 0.0f;                            ///< rad, in the plane.
+  std::array<float, 4> rotation{0, 0, 0, 1.0f};  ///< Quaternion x, y, z, w, in space.
   Triple velocity{};
-  Triple spin{};                                  ///< rad/s; in the plane the first number.
+  Triple spin{};  ///< rad/s; in the plane the first number.
   float mass = 0.0f;
   float linear_damping = 0.0f;
   float angular_damping = 0.0f;
@@ -80,13 +80,14 @@ enum class Frame : std::uint32_t { kUnknown = 0, kWorld, kBody };
 ///   torque       value[0] [N m] in the plane, value in space, times the axis.
 ///   motor_speed  value[0] [rad/s] times the axis becomes the speed of joint `target`.
 ///   impulse      value [N s], once when the button goes down. Buttons only.
-///   spawn        a body of prefab `target` at `position` with `velocity`, once when the button goes
+///   spawn        a body of prefab `target` at `position` with `velocity`, once when the button
+///   goes
 ///                down, at most `limit` alive: the oldest makes room. Buttons only.
 struct Control {
   Source source = Source::kAxis;
-  std::uint32_t index = 0;      ///< Axis 0 to 3, button 0 to 15.
+  std::uint32_t index = 0;  ///< Axis 0 to 3, button 0 to 15.
   Effect effect = Effect::kForce;
-  std::string target;           ///< Name of a body, joint or prefab.
+  std::string target;  ///< Name of a body, joint or prefab.
   Triple value{};
   Frame frame = Frame::kWorld;  ///< Of `value`, for force and impulse.
   Triple position{};            ///< m, world.
@@ -94,8 +95,8 @@ struct Control {
   std::uint32_t limit = 16;     ///< 1 to 256.
 };
 
-/// What a seat's script says from tick `from` to before tick `until` (0: for ever): all of the time,
-/// or the first `hold` of every `every` ticks.
+/// What a seat's script says from tick `from` to before tick `until` (0: for ever): all of the
+/// time, or the first `hold` of every `every` ticks.
 struct ScriptEntry {
   std::uint32_t from = 1;
   std::uint32_t until = 0;

@@ -21,10 +21,8 @@ struct MeaningWriter {
     for (const char c : text) bytes.push_back(static_cast<std::byte>(c));
   }
   template <class Number>
-    requires std::is_integral_v<Number> || std::is_enum_v<Number>
-  void write(Number value) {
-    number(static_cast<std::uint64_t>(value));
-  }
+  requires std::is_integral_v<Number> || std::is_enum_v<Number>
+  void write(Number value) { number(static_cast<std::uint64_t>(value)); }
   template <std::size_t N>
   void write(const std::array<float, N>& values) {
     for (const float value : values) write(value);
@@ -46,8 +44,8 @@ std::uint64_t scene_digest(const Scene& scene) {
   const solver::Result<Simulation> start = Simulation::create(scene);
   if (start.ok()) start.value().encode(bytes);
   MeaningWriter writer{bytes};
-  // Names are what controls refer to. The script is left out: it is what a player might do, not what
-  // the scene means; so is the summary.
+  // Names are what controls refer to. The script is left out: it is what a player might do, not
+  // what the scene means; so is the summary.
   for (const SceneBody& body : scene.bodies) writer.write(body.name);
   for (const SceneJoint& joint : scene.joints) writer.write(joint.name);
   writer.write(scene.prefabs);

@@ -88,9 +88,9 @@ static void add_player(Scene& scene, int i, int players, float half_width) {
   const std::string name = "player-" + std::to_string(i);
   SceneBody body;
   body.name = name;
-  body.position = {(static_cast<float>(i) + 0.5f) / static_cast<float>(players) * 2.0f * half_width -
-                       half_width,
-                   14.0f, 0.0f};
+  body.position = {
+      (static_cast<float>(i) + 0.5f) / static_cast<float>(players) * 2.0f * half_width - half_width,
+      14.0f, 0.0f};
   body.shapes.push_back(ball_shape(0.5f));
   body.shapes[0].density = 3.0f;
   scene.bodies.push_back(body);

@@ -24,12 +24,12 @@ SceneShape ball_shape(float radius);
 SceneBody ground();
 /// Gravity of 10 m/s^2 downwards and one material.
 Scene planar_scene(const char* name, const char* summary);
-/// A seat whose button 0 throws a heavy ball from `position` with `velocity`, by script at ticks 120,
-/// 360, ...; at most four at once.
+/// A seat whose button 0 throws a heavy ball from `position` with `velocity`, by script at ticks
+/// 120, 360, ...; at most four at once.
 void add_thrower(Scene& scene, const Triple& position, const Triple& velocity);
 
-/// Uniform integers from a seed. Source: Steele, Lea and Flood, "Fast splittable pseudorandom number
-/// generators" (OOPSLA 2014): splitmix64.
+/// Uniform integers from a seed. Source: Steele, Lea and Flood, "Fast splittable pseudorandom
+/// number generators" (OOPSLA 2014): splitmix64.
 struct Random {
   std::uint64_t state;
   std::uint64_t next() {

@@ -29,8 +29,8 @@ static std::vector<Triple> circle(float centre_x) {
   return points;
 }
 
-/// One arch of the cycloid x = r (t - sin t), y = r (1 + cos t), turned to a bowl: of all curves the
-/// one on which every start takes the same time to the bottom, and none takes less.
+/// One arch of the cycloid x = r (t - sin t), y = r (1 + cos t), turned to a bowl: of all curves
+/// the one on which every start takes the same time to the bottom, and none takes less.
 static std::vector<Triple> cycloid(float centre_x) {
   const float r = 0.5f * kHeight;
   const float half_width = r * solver::kPi;
@@ -124,8 +124,7 @@ static Seat seat_of(const char* name, std::uint32_t phase) {
 }
 
 Scene half_pipe() {
-  Scene scene =
-      planar_scene("half-pipe", "Two riders: one ramp is a circle, the other a cycloid.");
+  Scene scene = planar_scene("half-pipe", "Two riders: one ramp is a circle, the other a cycloid.");
   scene.materials[0].name = "ramp";
   scene.materials.push_back({"wheels", 0.0f, 0.0f});
   const float circle_x = -5.0f;

@@ -40,8 +40,8 @@ static void list_jointed_bodies(const WorldState<D>& state, StepScratch<D>& scra
   for (const Joint<D>& joint : state.joints)
     if (joint.kind != JointKind::kFree && joint.collide_connected == 0)
       scratch.jointed_bodies.push_back(body_pair_key(joint.body_a, joint.body_b));
-  std::sort(scratch.jointed_bodies.begin(),
-            scratch.jointed_bodies.end());  // Total order: integers.
+  // Total order: equal integers are one and the same.
+  std::sort(scratch.jointed_bodies.begin(), scratch.jointed_bodies.end());
 }
 
 /// A body reaches as far as it flies in a tick, so that what it will hit is among the pairs.

@@ -1,3 +1,5 @@
+#include "scenes/catalogue.hpp"
+
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -5,7 +7,6 @@
 #include <map>
 #include <sstream>
 
-#include "scenes/catalogue.hpp"
 #include "scenes/simulation.hpp"
 
 namespace cycloid::scenes {

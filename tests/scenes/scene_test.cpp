@@ -84,8 +84,8 @@ TEST(Catalogue, ParametersGiveOtherSizes) {
 }
 
 TEST(Catalogue, BadNamesAndParametersSayWhatIsPossible) {
-  for (const char* name : {"pyramid:base=0", "pyramid:base=401", "pyramid:base=x", "pyramid:base=",
-                           "pyramid:height=3", "pyramid:base"}) {
+  for (const char* name : {"pyramid:base=0", "pyramid:base=401", "pyramid:base=x",
+                           "pyramid:base=", "pyramid:height=3", "pyramid:base"}) {
     const Loaded loaded = find(name);
     ASSERT_FALSE(loaded.scene) << name;
     ASSERT_EQ(loaded.mistakes.size(), 1u);
@@ -115,7 +115,8 @@ TEST(Mistakes, EachIsNamedByPathAndReason) {
       {R"({"tuning": {"stabilisation": "hard"}})", "/tuning/stabilisation", "baumgarte, soft"},
       {R"({"limits": {"bodies": -1}})", "/limits/bodies", "out of range"},
       {R"({"limits": {"bodies": 0}, "bodies": [{"kind": "static"}]})", "/limits/bodies", "exceeds"},
-      {R"({"materials": [{"name": "m", "friction": -1}]})", "/materials/0/friction", "out of range"},
+      {R"({"materials": [{"name": "m", "friction": -1}]})", "/materials/0/friction",
+       "out of range"},
       {R"({"bodies": [{"mass": -1}]})", "/bodies/0/mass", "has to be positive"},
       {R"({"bodies": [{"kind": "ghost"}]})", "/bodies/0/kind", "one of static"},
       {R"({"bodies": [{"shapes": [{"radius": 0}]}]})", "/bodies/0/shapes/0/radius", "positive"},
@@ -146,10 +147,12 @@ TEST(Mistakes, EachIsNamedByPathAndReason) {
     EXPECT_FALSE(loaded.scene) << wrong.json;
     const bool found =
         std::any_of(loaded.mistakes.begin(), loaded.mistakes.end(), [&](const Mistake& mistake) {
-          return mistake.path == wrong.path && mistake.reason.find(wrong.reason) != std::string::npos;
+          return mistake.path == wrong.path &&
+                 mistake.reason.find(wrong.reason) != std::string::npos;
         });
     std::string all;
-    for (const Mistake& mistake : loaded.mistakes) all += mistake.path + ": " + mistake.reason + "\n";
+    for (const Mistake& mistake : loaded.mistakes)
+      all += mistake.path + ": " + mistake.reason + "\n";
     EXPECT_TRUE(found) << wrong.json << "\ngave\n" << all;
   }
 }
