@@ -81,8 +81,7 @@ enum class Frame : std::uint32_t { kUnknown = 0, kWorld, kBody };
 ///   motor_speed  value[0] [rad/s] times the axis becomes the speed of joint `target`.
 ///   impulse      value [N s], once when the button goes down. Buttons only.
 ///   spawn        a body of prefab `target` at `position` with `velocity`, once when the button
-///   goes
-///                down, at most `limit` alive: the oldest makes room. Buttons only.
+///                goes down; at most `limit` alive: the oldest makes room. Buttons only.
 struct Control {
   Source source = Source::kAxis;
   std::uint32_t index = 0;  ///< Axis 0 to 3, button 0 to 15.

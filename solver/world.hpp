@@ -76,7 +76,7 @@ class World {
   ///
   /// Forces and torques apply for this tick and are cleared. When a value would leave the finite,
   /// bounded range, nothing is committed: the world keeps the state of the tick before, enters the
-  /// fault state (`fault()`), and this and every later call returns kFaulted.
+  /// fault state (`fault()`), and this and every later step returns kFaulted.
   Error step();
 
   Result<BodyId> create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> shapes);
