@@ -1,3 +1,4 @@
+# shellcheck shell=bash disable=SC2034 # `phase` is read by ./dev
 # What a build needs from the distribution. Sourced by ./dev.
 
 packages=(
@@ -16,11 +17,8 @@ is_installed() {
 as_root() {
   if [[ $(id -u) == 0 ]]; then
     env DEBIAN_FRONTEND=noninteractive "$@"
-  elif command -v sudo >/dev/null; then
-    sudo env DEBIAN_FRONTEND=noninteractive "$@"
   else
-    printf 'dev: packages are missing and there is no sudo; as root, type:\n  %s\n' "$*" >&2
-    return 1
+    sudo env DEBIAN_FRONTEND=noninteractive "$@"
   fi
 }
 
@@ -38,14 +36,22 @@ setup() {
     printf 'dev: not a Debian or Ubuntu; this may be missing: %s\n' "${missing[*]}" >&2
     return
   fi
+  if [[ $(id -u) != 0 ]] && ! command -v sudo >/dev/null; then
+    printf 'dev: packages are missing and there is no sudo; as root, type:\n  %s\n' \
+      "apt-get update && apt-get install --no-install-recommends --no-remove ${missing[*]}" >&2
+    return 1
+  fi
   begin "install ${missing[*]}"
-  # Package lists of a fresh machine are empty, and old ones name files that are gone.
-  as_root apt-get update -q
+  # Package lists of a fresh machine are empty, and old ones name files that are gone. A source of
+  # the user's own that does not answer is no reason to stop.
+  as_root apt-get update -q || printf 'dev: going on with the package lists there are\n' >&2
   removed=$(apt-get -s install --no-install-recommends "${missing[@]}" | awk '/^Remv/ { print $2 }')
   if [[ -n "$removed" ]]; then
     printf 'dev: installing %s would remove: %s\n' "${missing[*]}" "$removed" >&2
     printf 'dev: nothing was changed; remove these yourself or use another machine.\n' >&2
     return 1
   fi
-  as_root apt-get install -y -q --no-install-recommends --no-remove "${missing[@]}"
+  # A machine that has just started may be installing updates of its own: wait for it.
+  as_root apt-get -o DPkg::Lock::Timeout=300 install -y -q --no-install-recommends --no-remove \
+    "${missing[@]}"
 }

@@ -20,6 +20,8 @@ static std::size_t columns(const std::string& line) {
 static Complaints against_shape(const Source& source) {
   // In two parts, so that this file does not name them itself.
   static const std::regex kUnfinished(std::string(R"(\b(TO)") + "DO|FIX" + "ME|XX" + R"(X)\b)");
+  // Best effort: a comment that ends as a statement does and holds what only code holds.
+  static const std::regex kOldCode(R"(^\s*//+\s*([{}]|.*(=|\(|->|::|\breturn\b).*[;{}])\s*$)");
   Complaints complaints;
   if (source.lines.size() > kLinesMax)
     complaints.push_back(source.path + ": more than 400 lines; one idea a file, so split it");
@@ -33,6 +35,8 @@ static Complaints against_shape(const Source& source) {
       complaints.push_back(source.at(i) + "a tab; write spaces, ./dev format");
     if (std::regex_search(line, kUnfinished))
       complaints.push_back(source.at(i) + "not finished; do it now, or leave it out");
+    if (std::regex_search(line, kOldCode))
+      complaints.push_back(source.at(i) + "code in a comment; remove it, the history keeps it");
   }
   return complaints;
 }
@@ -78,7 +82,7 @@ TEST(Files, AreShortAndNarrowAndFinished) {
   for (const Source& source : sources()) EXPECT_THAT(against_shape(source), testing::IsEmpty());
 }
 
-TEST(Files, LongWideOrUnfinishedOnesAreSeen) {
+TEST(Files, LongWideUnfinishedOrStaleOnesAreSeen) {
   std::string long_file = "#pragma once\n";
   for (int i = 0; i < 400; ++i) long_file += "\n";
   const std::string unfinished = std::string("// TO") + "DO: later\n";
@@ -88,6 +92,10 @@ TEST(Files, LongWideOrUnfinishedOnesAreSeen) {
   EXPECT_EQ(against_shape(make_source("cli/x.cpp", std::string(101, 'x'))).size(), 1u);
   EXPECT_EQ(against_shape(make_source("cli/x.cpp", "\tint x;")).size(), 1u);
   EXPECT_EQ(against_shape(make_source("cli/x.cpp", unfinished)).size(), 1u);
+  EXPECT_EQ(against_shape(make_source("cli/x.cpp", "  // x = f(y);\n  // }\n")).size(), 2u);
+  EXPECT_EQ(against_shape(make_source("cli/x.cpp", "// return x;\n")).size(), 1u);
+  EXPECT_EQ(against_shape(make_source("cli/x.cpp", "// Axes over both;\nf(x);  // So.\n")).size(),
+            0u);
   EXPECT_THAT(against_shape(make_source("cli/x.cpp", "// m/s² " + std::string(92, 'x'))),
               testing::IsEmpty());
 }
