@@ -56,6 +56,12 @@ static bool is_free(const Mlcp& problem, int row) {
          problem.upper[row] == kInfinity;
 }
 
+/// True where the bounds leave no choice. A friction row's do where mu is 0.
+static bool is_fixed(const Mlcp& problem, int row) {
+  return problem.normal_of[row] < 0 ? problem.lower[row] == problem.upper[row]
+                                    : !(problem.friction[row] > 0.0);
+}
+
 /// lambda = c z + c0 in the rows that are not free, with z >= 0 complementary to
 /// c^T w + coupling z + constant.
 struct Variables {
@@ -66,9 +72,8 @@ struct Variables {
 };
 
 static int variables_of(const Mlcp& problem, int row) {
-  if (is_free(problem, row)) return 0;
-  if (problem.normal_of[row] >= 0) return problem.friction[row] > 0.0 ? 3 : 0;
-  if (problem.lower[row] == problem.upper[row]) return 0;
+  if (is_free(problem, row) || is_fixed(problem, row)) return 0;
+  if (problem.normal_of[row] >= 0) return 3;
   return std::isfinite(problem.lower[row]) && std::isfinite(problem.upper[row]) ? 2 : 1;
 }
 
@@ -144,8 +149,9 @@ static Elimination eliminate_free(const Mlcp& problem, const MatrixXd& a, const 
   return elimination;
 }
 
-/// One attempt: impulses of the scaled problem from Lemke's method. False where it ended in a ray.
-static bool attempt(const Mlcp& problem, double covering_slope, VectorXd& lambda, int& pivots) {
+/// One attempt: what Lemke's method comes to, as impulses of the scaled problem. The covering
+/// vector rises by `covering_slope` from the first row to the last.
+static std::vector<double> attempt(const Mlcp& problem, double covering_slope, int& pivots) {
   const MatrixXd a = matrix_of(problem);
   const VectorXd b = Eigen::Map<const VectorXd>(problem.b.data(), problem.n);
   const Variables variables = variables_of(problem);
@@ -160,14 +166,14 @@ static bool attempt(const Mlcp& problem, double covering_slope, VectorXd& lambda
   for (int i = 0; i < m; ++i) covering[i] = 1.0 + covering_slope * (i + 1) / m;
   const LemkeResult result = solve_lemke(matrix, q, covering, 100 + 20 * m);
   pivots += result.pivots;
-  lambda = variables.c * result.z + variables.c0;
-  lambda += free.gain * lambda + free.offset;
-  return result.solved;
+  VectorXd lambda = variables.c * result.z + variables.c0;
+  lambda += (free.gain * lambda + free.offset).eval();
+  return std::vector<double>(lambda.data(), lambda.data() + problem.n);
 }
 
 /// What each row does in a solution, and with it the equations that remain.
 struct States {
-  std::vector<int> active;  ///< Rows whose w is 0.
+  std::vector<int> active;  ///< Rows whose w is 0, and whose bounds leave a choice.
   MatrixXd reduced;         ///< lambda = reduced * lambda_active + fixed.
   VectorXd fixed;
 };
@@ -177,7 +183,7 @@ static States states_of(const Mlcp& problem, const std::vector<double>& lambda) 
   States states{{}, {}, VectorXd::Zero(problem.n)};
   std::vector<int> place(problem.n, -1);
   for (int i = 0; i < problem.n; ++i)
-    if (std::abs(w[i]) <= kActive) {
+    if (std::abs(w[i]) <= kActive && !is_fixed(problem, i)) {
       place[i] = static_cast<int>(states.active.size());
       states.active.push_back(i);
     }
@@ -252,9 +258,7 @@ static std::vector<double> solve_scaled(const Mlcp& problem, int& pivots) {
   };
   for (const double slope : {0.0, 1.0, -0.5, 3.0}) {
     if (best_residual <= kConverged) return best;
-    VectorXd lambda;
-    if (!attempt(problem, slope, lambda, pivots) || !lambda.allFinite()) continue;
-    consider(std::vector<double>(lambda.data(), lambda.data() + problem.n));
+    consider(attempt(problem, slope, pivots));
   }
   if (best_residual <= kConverged) return best;
   PgsOptions options;

@@ -11,7 +11,7 @@ struct DirectResult {
   std::vector<double> lambda;   ///< Impulses (N s).
   std::vector<double> w;        ///< Velocities after them, A lambda + b (m/s).
   double residual = 0.0;        ///< Residual::relative: the natural map over the size of impulses.
-  int rank = 0;                 ///< Of A over the active rows: those whose w is 0.
+  int rank = 0;                 ///< Of A over the active rows: w is 0 and lower < upper.
   bool rank_deficient = false;  ///< Fewer than the active rows: the impulses are not unique.
   bool converged = false;       ///< residual <= 1e-10.
   int pivots = 0;               ///< Of Lemke's method, over all attempts.

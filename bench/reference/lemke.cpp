@@ -10,6 +10,7 @@ using Eigen::VectorXd;
 
 static constexpr double kPivotMin = 1e-9;       ///< Smaller entries, of order 1, are rounding.
 static constexpr double kTie = 1e-11;           ///< Ratios this close are the same.
+static constexpr double kZero = 1e-13;          ///< Values up to this, of order 1, are 0.
 static constexpr int kPivotsPerFactoring = 24;  ///< Before the inverse is computed afresh.
 
 /// The equations I w - M z - covering z0 = q and the basis, which names one variable per row:
@@ -31,16 +32,18 @@ static VectorXd column_of(const Tableau& tableau, int variable) {
   return -tableau.covering;
 }
 
-/// Computes the inverse from the basis alone, so that rounding does not build up; false where the
-/// basis is singular to working precision.
-static bool refactor(Tableau& tableau) {
+/// Computes the inverse from the basis alone, so that rounding does not build up. Where the basis
+/// is singular to working precision, the inverse stays as it is.
+static void refactor(Tableau& tableau) {
   const int m = tableau.size();
   MatrixXd columns(m, m);
   for (int i = 0; i < m; ++i) columns.col(i) = column_of(tableau, tableau.basis[i]);
   const Eigen::PartialPivLU<MatrixXd> factors(columns);
-  tableau.inverse = factors.inverse();
-  tableau.values = factors.solve(tableau.q);
-  return tableau.inverse.allFinite() && tableau.values.allFinite();
+  const MatrixXd inverse = factors.inverse();
+  const VectorXd values = factors.solve(tableau.q);
+  if (!inverse.allFinite() || !values.allFinite()) return;
+  tableau.inverse = inverse;
+  tableau.values = values;
 }
 
 /// True where row i reaches 0 before row k when the variable enters: compares (values, inverse)
@@ -97,6 +100,13 @@ static int first_row(const VectorXd& q, const VectorXd& covering) {
   return best;
 }
 
+/// The value of z0, 0 where it is not basic; the problem is solved where it is 0.
+static double relaxation_of(const Tableau& tableau) {
+  for (int i = 0; i < tableau.size(); ++i)
+    if (tableau.basis[i] == 2 * tableau.size()) return tableau.values[i];
+  return 0.0;
+}
+
 static VectorXd solution_of(const Tableau& tableau) {
   const int m = tableau.size();
   VectorXd z = VectorXd::Zero(m);
@@ -109,33 +119,26 @@ static VectorXd solution_of(const Tableau& tableau) {
 LemkeResult solve_lemke(const MatrixXd& matrix, const VectorXd& q, const VectorXd& covering,
                         int pivots_max) {
   const int m = static_cast<int>(q.size());
-  LemkeResult result{VectorXd::Zero(m), false, 0};
-  if (m == 0 || q.minCoeff() >= 0.0) {
-    result.solved = true;
-    return result;
-  }
+  LemkeResult result{VectorXd::Zero(m), 0};
+  if (m == 0 || q.minCoeff() >= -kZero) return result;
   Tableau tableau{matrix, q, covering, std::vector<int>(m), MatrixXd::Identity(m, m), q};
   for (int i = 0; i < m; ++i) tableau.basis[i] = i;
 
   int entering = 2 * m;
   int row = first_row(q, covering);
   VectorXd column = column_of(tableau, entering);
-  while (result.pivots < pivots_max) {
+  while (row >= 0 && result.pivots < pivots_max) {
     const int left = tableau.basis[row];
     pivot(tableau, row, entering, column);
     ++result.pivots;
-    const bool done = left == 2 * m;
-    if ((done || result.pivots % kPivotsPerFactoring == 0) && !refactor(tableau)) return result;
-    if (done) {
-      result.z = solution_of(tableau);
-      result.solved = true;
-      return result;
-    }
+    const bool done = relaxation_of(tableau) <= kZero;
+    if (done || result.pivots % kPivotsPerFactoring == 0) refactor(tableau);
+    if (done) break;
     entering = left < m ? left + m : left - m;
     column = tableau.inverse * column_of(tableau, entering);
     row = leaving_row(tableau, column);
-    if (row < 0) return result;
   }
+  result.z = solution_of(tableau);
   return result;
 }
 
