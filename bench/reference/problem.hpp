@@ -11,11 +11,11 @@ inline constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 /// A mixed linear complementarity problem: find impulses `lambda` (N s, or N m s for angular rows)
 /// so that the velocities after them, w = A lambda + b (m/s or rad/s), obey per row:
-/// lower <= lambda <= upper; w == 0 inside; w >= 0 at lower; w <= 0 at upper.
+/// lower <= lambda <= upper, with w == 0 inside, w >= 0 at lower and w <= 0 at upper.
 /// Friction rows (normal_of >= 0) have the bounds -+ friction * lambda of their normal, as it is in
 /// the same solution, not as it was before it.
-/// Preconditions: all vectors have n entries (a: n * n); a is symmetric and positive semidefinite;
-/// lower <= upper; a normal has lower >= 0 and is no friction row; bounds of friction rows are not
+/// Preconditions: all vectors have n entries (a: n * n), a is symmetric and positive semidefinite,
+/// lower <= upper, a normal has lower >= 0 and is no friction row. Bounds of friction rows are not
 /// read. Source: Baraff 1994, "Fast contact force computation for nonpenetrating rigid bodies".
 struct Mlcp {
   int n = 0;

@@ -20,9 +20,9 @@ struct SlidingRod {
 };
 
 /// The normal force over the weight, N / (m g), while the end digs in and its acceleration towards
-/// the ground is 0: 1 / (1 + 3 c^2 - 3 mu s c) with the cosine c and sine s of the angle; rotation
-/// at rest. Without bound as mu nears (1 + 3 c^2) / (3 s c), and negative above it (no solution);
-/// exactly there +infinity. Source: Painleve 1895; Baraff 1991, "Coping with friction".
+/// the ground is 0: 1 / (1 + 3 c^2 - 3 mu s c) with the cosine c and sine s of the angle, before
+/// it rotates. Without bound as mu nears (1 + 3 c^2) / (3 s c), and negative above it (no
+/// solution); exactly there +infinity. Source: Painleve 1895; Baraff 1991, "Coping with friction".
 double normal_force_over_weight(const SlidingRod& rod);
 
 /// The coefficient of friction from which on no forces exist: (1 + 3 c^2) / (3 s c), 4/3 at slope

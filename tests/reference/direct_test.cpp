@@ -191,6 +191,9 @@ TEST(Direct, ReportsDuplicatesAndGivesTheSameWrench) {
   }
   const DirectResult ten = solve_direct(repeated(problems[0], 10).problem);
   EXPECT_EQ(ten.rank, 4) << "Of 40 active rows.";
+  const DirectResult sliding = solve_direct(repeated(point_on_slope(0.2), 10).problem);
+  for (int i = 0; i < 20; ++i)
+    EXPECT_NEAR(sliding.lambda[i], i % 2 == 0 ? 0.1 : 0.02, 1e-13) << "Equal shares.";
 }
 
 TEST(Direct, FrictionHoldsUpToItsConeAndNotBeyond) {
