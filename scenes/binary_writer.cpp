@@ -15,6 +15,7 @@ static std::unique_ptr<fb::MaterialT> packed(const SceneMaterial& from) {
   to->name = from.name;
   to->friction = from.friction;
   to->restitution = from.restitution;
+  to->rolling_resistance = from.rolling_resistance;
   return to;
 }
 
@@ -63,15 +64,29 @@ static std::unique_ptr<fb::JointT> packed(const SceneJoint& from) {
   to->body_b = from.body_b;
   to->anchor_a = triple(from.anchor_a);
   to->anchor_b = triple(from.anchor_b);
+  to->axis = triple(from.axis);
   to->length = from.length;
+  to->ratio = from.ratio;
   to->hertz = from.hertz;
   to->damping_ratio = from.damping_ratio;
+  to->angular_hertz = from.angular_hertz;
+  to->angular_damping_ratio = from.angular_damping_ratio;
   to->limit_enabled = from.limit_enabled;
-  to->lower_angle = from.lower_angle;
-  to->upper_angle = from.upper_angle;
-  to->motor_enabled = from.motor_enabled;
+  to->lower = from.lower;
+  to->upper = from.upper;
+  to->motor = static_cast<fb::MotorKind>(from.motor);
   to->motor_speed = from.motor_speed;
-  to->motor_torque_max = from.motor_torque_max;
+  to->motor_max = from.motor_max;
+  to->target = from.target;
+  to->drive_amplitude = from.drive_amplitude;
+  to->drive_hertz = from.drive_hertz;
+  to->force_max = from.force_max;
+  to->torque_max = from.torque_max;
+  to->ground_a = triple(from.ground_a);
+  to->ground_b = triple(from.ground_b);
+  to->curve = static_cast<fb::CurveKind>(from.curve);
+  to->size_x = from.size[0];
+  to->size_y = from.size[1];
   to->collide_connected = from.collide_connected;
   return to;
 }
@@ -119,11 +134,17 @@ static std::unique_ptr<fb::TuningT> packed(const solver::Tuning& from) {
   to->substeps = from.substeps;
   to->sweeps = from.sweeps;
   to->relax_sweeps = from.relax_sweeps;
-  to->stabilisation = from.stabilisation == solver::Stabilisation::kSoft
-                          ? fb::Stabilisation::soft
-                          : fb::Stabilisation::baumgarte;
+  to->position_sweeps = from.position_sweeps;
+  to->stabilisation =
+      static_cast<fb::Stabilisation>(static_cast<std::uint32_t>(from.stabilisation) + 1);
+  to->order = static_cast<fb::Order>(from.order);
+  to->contact_block = static_cast<fb::ContactBlockRows>(from.contact_block);
+  to->joint_solver = static_cast<fb::JointSolver>(from.joint_solver);
+  to->warm_starting = from.warm_starting;
+  to->over_relaxation = from.over_relaxation;
   to->baumgarte = from.baumgarte;
   to->slop = from.slop;
+  to->correction_max = from.correction_max;
   to->contact_hertz = from.contact_hertz;
   to->contact_damping_ratio = from.contact_damping_ratio;
   to->joint_hertz = from.joint_hertz;
@@ -131,6 +152,9 @@ static std::unique_ptr<fb::TuningT> packed(const solver::Tuning& from) {
   to->push_speed_max = from.push_speed_max;
   to->restitution_threshold = from.restitution_threshold;
   to->speculative_distance = from.speculative_distance;
+  to->sleep_s = from.sleep_s;
+  to->sleep_speed = from.sleep_speed;
+  to->continuous = from.continuous;
   return to;
 }
 

@@ -44,7 +44,10 @@ static std::string reason_of(const Error& error) {
   if (field == "radius") return "has to be positive and finite";
   if (field == "mass") return "has to be positive, or the shapes have to give it";
   if (field == "rotation" || field == "normal") return "has to have length 1";
-  if (field == "upper_angle") return "has to be at least lower_angle, both within 3.2 rad";
+  if (field == "upper") return "has to be at least lower, and an angle within 3.2 rad";
+  if (field == "axis") return "has to have length 1";
+  if (field == "limit_enabled") return "is not possible here: this kind takes no limits";
+  if (field == "motor") return "is not possible here: this kind takes no such motor";
   if (field == "kind") return "is not possible here";
   return "is out of range";
 }
@@ -88,7 +91,8 @@ class Builder {
     def.limits = scene_.limits;
     def.materials.clear();
     for (const SceneMaterial& material : scene_.materials)
-      def.materials.push_back({material.friction, material.restitution});
+      def.materials.push_back(
+          {material.friction, material.restitution, material.rolling_resistance});
     if (def.materials.empty()) def.materials.push_back({});
     return def;
   }
@@ -170,6 +174,35 @@ class Builder {
     return found != bodies_.end();
   }
 
+  static void set_joint(const SceneJoint& from, solver::JointDef<D>& def) {
+    def.kind = from.kind;
+    def.anchor_a = vec<D>(from.anchor_a);
+    def.anchor_b = vec<D>(from.anchor_b);
+    def.axis = vec<D>(from.axis);
+    def.length = from.length;
+    def.ratio = from.ratio;
+    def.hertz = from.hertz;
+    def.damping_ratio = from.damping_ratio;
+    def.angular_hertz = from.angular_hertz;
+    def.angular_damping_ratio = from.angular_damping_ratio;
+    def.limit_enabled = from.limit_enabled;
+    def.lower = from.lower;
+    def.upper = from.upper;
+    def.motor = from.motor;
+    def.motor_speed = from.motor_speed;
+    def.motor_max = from.motor_max;
+    def.target = from.target;
+    def.drive_amplitude = from.drive_amplitude;
+    def.drive_hertz = from.drive_hertz;
+    def.force_max = from.force_max;
+    def.torque_max = from.torque_max;
+    def.ground_a = vec<D>(from.ground_a);
+    def.ground_b = vec<D>(from.ground_b);
+    def.curve = from.curve;
+    def.size = from.size;
+    def.collide_connected = from.collide_connected;
+  }
+
   void add_joint(std::size_t i) {
     const SceneJoint& from = scene_.joints[i];
     const std::string path = at("/joints", i);
@@ -177,19 +210,7 @@ class Builder {
     const bool a = find_body(from.body_a, path + "/body_a", def.body_a);
     const bool b = find_body(from.body_b, path + "/body_b", def.body_b);
     if (!a || !b) return;
-    def.kind = from.kind;
-    def.anchor_a = vec<D>(from.anchor_a);
-    def.anchor_b = vec<D>(from.anchor_b);
-    def.length = from.length;
-    def.hertz = from.hertz;
-    def.damping_ratio = from.damping_ratio;
-    def.limit_enabled = from.limit_enabled;
-    def.lower_angle = from.lower_angle;
-    def.upper_angle = from.upper_angle;
-    def.motor_enabled = from.motor_enabled;
-    def.motor_speed = from.motor_speed;
-    def.motor_torque_max = from.motor_torque_max;
-    def.collide_connected = from.collide_connected;
+    set_joint(from, def);
     const solver::Result<solver::JointId> id = built_->world.create_joint(def);
     if (!id.ok()) return complain(path + "/" + id.error().field, id.error());
     if (from.name.empty()) return;
@@ -237,9 +258,9 @@ class Builder {
         if (found == joints_.end())
           return complain(path + "/target", "names no joint: '" + control.target + "'");
         bound.joint = found->second.first;
-        bound.motor_torque_max = scene_.joints[found->second.second].motor_torque_max;
-        if (!scene_.joints[found->second.second].motor_enabled)
-          return complain(path + "/target", "names a joint without a motor");
+        bound.motor_max = scene_.joints[found->second.second].motor_max;
+        if (scene_.joints[found->second.second].motor != solver::MotorKind::kSpeed)
+          return complain(path + "/target", "names a joint without a motor of speed");
         break;
       }
       case Effect::kSpawn: {

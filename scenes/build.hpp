@@ -13,7 +13,7 @@ struct BoundControl {
   Control control;
   solver::BodyId body;    ///< force, torque, impulse
   solver::JointId joint;  ///< motor_speed
-  float motor_torque_max = 0.0f;
+  float motor_max = 0.0f;
   std::size_t prefab = 0;  ///< spawn
   std::uint32_t first_register =
       0;  ///< spawn: next place, then `limit` pairs (index + 1, generation).

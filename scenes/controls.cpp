@@ -74,8 +74,7 @@ static void apply(Built<D>& built, const BoundControl& bound, float amount, bool
         allow(world.apply_torque(bound.body, turning<D>(bound.control.value, amount)));
       break;
     case Effect::kMotorSpeed:
-      allow(world.set_motor(bound.joint, true, amount * bound.control.value[0],
-                            bound.motor_torque_max));
+      allow(world.set_motor(bound.joint, true, amount * bound.control.value[0], bound.motor_max));
       break;
     case Effect::kImpulse:
       if (pressed) allow(world.apply_impulse(bound.body, directed(world, bound, 1.0f)));

@@ -30,15 +30,58 @@ struct Names<solver::BodyKind> {
       {"dynamic", solver::BodyKind::kDynamic},
       {"particle", solver::BodyKind::kParticle}};
 };
+/// User-defined kinds are functions of a program, not data, so scenes have no name for them.
 template <>
 struct Names<solver::JointKind> {
   static constexpr std::pair<std::string_view, solver::JointKind> kAll[] = {
-      {"distance", solver::JointKind::kDistance}, {"revolute", solver::JointKind::kRevolute}};
+      {"distance", solver::JointKind::kDistance},   {"revolute", solver::JointKind::kRevolute},
+      {"prismatic", solver::JointKind::kPrismatic}, {"wheel", solver::JointKind::kWheel},
+      {"weld", solver::JointKind::kWeld},           {"motor", solver::JointKind::kMotor},
+      {"target", solver::JointKind::kTarget},       {"gear", solver::JointKind::kGear},
+      {"pulley", solver::JointKind::kPulley},       {"curve", solver::JointKind::kCurve}};
+};
+template <>
+struct Names<solver::CurveKind> {
+  static constexpr std::pair<std::string_view, solver::CurveKind> kAll[] = {
+      {"circle", solver::CurveKind::kCircle},
+      {"ellipse", solver::CurveKind::kEllipse},
+      {"cycloid", solver::CurveKind::kCycloid},
+      {"polyline", solver::CurveKind::kPolyline}};
+};
+template <>
+struct Names<solver::MotorKind> {
+  static constexpr std::pair<std::string_view, solver::MotorKind> kAll[] = {
+      {"off", solver::MotorKind::kOff},
+      {"speed", solver::MotorKind::kSpeed},
+      {"position", solver::MotorKind::kPosition}};
 };
 template <>
 struct Names<solver::Stabilisation> {
   static constexpr std::pair<std::string_view, solver::Stabilisation> kAll[] = {
-      {"baumgarte", solver::Stabilisation::kBaumgarte}, {"soft", solver::Stabilisation::kSoft}};
+      {"baumgarte", solver::Stabilisation::kBaumgarte},
+      {"soft", solver::Stabilisation::kSoft},
+      {"split_impulse", solver::Stabilisation::kSplitImpulse},
+      {"ngs", solver::Stabilisation::kNgs},
+      {"xpbd", solver::Stabilisation::kXpbd}};
+};
+template <>
+struct Names<solver::Order> {
+  static constexpr std::pair<std::string_view, solver::Order> kAll[] = {
+      {"color", solver::Order::kColor},
+      {"id", solver::Order::kId},
+      {"reverse", solver::Order::kReverse}};
+};
+template <>
+struct Names<solver::ContactBlockRows> {
+  static constexpr std::pair<std::string_view, solver::ContactBlockRows> kAll[] = {
+      {"none", solver::ContactBlockRows::kNone},
+      {"normals", solver::ContactBlockRows::kNormals},
+      {"normal_friction", solver::ContactBlockRows::kNormalFriction}};
+};
+template <>
+struct Names<solver::JointSolver> {
+  static constexpr std::pair<std::string_view, solver::JointSolver> kAll[] = {
+      {"iterated", solver::JointSolver::kIterated}, {"direct", solver::JointSolver::kDirect}};
 };
 template <>
 struct Names<Source> {
@@ -65,6 +108,7 @@ void fields(SceneMaterial& m, F&& f) {
   f("name", m.name);
   f("friction", m.friction);
   f("restitution", m.restitution);
+  f("rolling_resistance", m.rolling_resistance);
 }
 
 template <class F>
@@ -113,15 +157,28 @@ void fields(SceneJoint& j, F&& f) {
   f("body_b", j.body_b);
   f("anchor_a", j.anchor_a);
   f("anchor_b", j.anchor_b);
+  f("axis", j.axis);
   f("length", j.length);
+  f("ratio", j.ratio);
   f("hertz", j.hertz);
   f("damping_ratio", j.damping_ratio);
+  f("angular_hertz", j.angular_hertz);
+  f("angular_damping_ratio", j.angular_damping_ratio);
   f("limit_enabled", j.limit_enabled);
-  f("lower_angle", j.lower_angle);
-  f("upper_angle", j.upper_angle);
-  f("motor_enabled", j.motor_enabled);
+  f("lower", j.lower);
+  f("upper", j.upper);
+  f("motor", j.motor);
   f("motor_speed", j.motor_speed);
-  f("motor_torque_max", j.motor_torque_max);
+  f("motor_max", j.motor_max);
+  f("target", j.target);
+  f("drive_amplitude", j.drive_amplitude);
+  f("drive_hertz", j.drive_hertz);
+  f("force_max", j.force_max);
+  f("torque_max", j.torque_max);
+  f("ground_a", j.ground_a);
+  f("ground_b", j.ground_b);
+  f("curve", j.curve);
+  f("size", j.size);
   f("collide_connected", j.collide_connected);
 }
 
@@ -160,9 +217,16 @@ void fields(solver::Tuning& t, F&& f) {
   f("substeps", t.substeps);
   f("sweeps", t.sweeps);
   f("relax_sweeps", t.relax_sweeps);
+  f("position_sweeps", t.position_sweeps);
   f("stabilisation", t.stabilisation);
+  f("order", t.order);
+  f("contact_block", t.contact_block);
+  f("joint_solver", t.joint_solver);
+  f("warm_starting", t.warm_starting);
+  f("over_relaxation", t.over_relaxation);
   f("baumgarte", t.baumgarte);
   f("slop", t.slop);
+  f("correction_max", t.correction_max);
   f("contact_hertz", t.contact_hertz);
   f("contact_damping_ratio", t.contact_damping_ratio);
   f("joint_hertz", t.joint_hertz);
@@ -170,6 +234,9 @@ void fields(solver::Tuning& t, F&& f) {
   f("push_speed_max", t.push_speed_max);
   f("restitution_threshold", t.restitution_threshold);
   f("speculative_distance", t.speculative_distance);
+  f("sleep_s", t.sleep_s);
+  f("sleep_speed", t.sleep_speed);
+  f("continuous", t.continuous);
 }
 
 template <class F>

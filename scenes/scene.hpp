@@ -20,6 +20,7 @@ struct SceneMaterial {
   std::string name;
   float friction = 0.6f;
   float restitution = 0.0f;
+  float rolling_resistance = 0.0f;
 };
 
 struct SceneShape {
@@ -51,6 +52,7 @@ struct SceneBody {
   std::vector<SceneShape> shapes;
 };
 
+/// Fields as in solver::JointDef, which says what each kind makes of them.
 struct SceneJoint {
   std::string name;
   solver::JointKind kind = solver::JointKind::kRevolute;
@@ -58,15 +60,28 @@ struct SceneJoint {
   std::string body_b;
   Triple anchor_a{};
   Triple anchor_b{};
+  Triple axis{};
   float length = 0.0f;
+  float ratio = 1.0f;
   float hertz = 0.0f;
   float damping_ratio = 0.0f;
+  float angular_hertz = 0.0f;
+  float angular_damping_ratio = 0.0f;
   bool limit_enabled = false;
-  float lower_angle = 0.0f;
-  float upper_angle = 0.0f;
-  bool motor_enabled = false;
+  float lower = 0.0f;
+  float upper = 0.0f;
+  solver::MotorKind motor = solver::MotorKind::kOff;
   float motor_speed = 0.0f;
-  float motor_torque_max = 0.0f;
+  float motor_max = 0.0f;
+  float target = 0.0f;
+  float drive_amplitude = 0.0f;
+  float drive_hertz = 0.0f;
+  float force_max = 0.0f;
+  float torque_max = 0.0f;
+  Triple ground_a{};
+  Triple ground_b{};
+  solver::CurveKind curve = solver::CurveKind::kCircle;
+  std::array<float, 2> size{};
   bool collide_connected = false;
 };
 

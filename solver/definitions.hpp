@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstdint>
 #include <vector>
 
@@ -47,10 +48,11 @@ struct Filter {
   std::int32_t group = 0;
 };
 
-/// Friction mixes as sqrt(a b), restitution as max(a, b).
+/// Friction mixes as sqrt(a b), restitution and rolling resistance as max(a, b).
 struct Material {
-  float friction = 0.6f;     ///< Coulomb coefficient, >= 0.
-  float restitution = 0.0f;  ///< 0 to 1.
+  float friction = 0.6f;            ///< Coulomb coefficient, >= 0.
+  float restitution = 0.0f;         ///< 0 to 1.
+  float rolling_resistance = 0.0f;  ///< Moment over normal force and radius; balls and capsules.
 };
 
 template <int D>
@@ -83,8 +85,32 @@ struct BodyDef {
 
 enum class JointKind : std::uint32_t {
   kFree = 0,
-  kDistance,  ///< |anchor_b - anchor_a| = length; a spring where hertz > 0.
-  kRevolute,  ///< anchor_a = anchor_b. In 2D with limits and a motor; in 3D a ball joint.
+  kDistance,   ///< |anchor_b - anchor_a| = length; a spring or, with limits, a rope.
+  kRevolute,   ///< anchor_a = anchor_b; in space a ball joint. Coordinate: the angle, 2D.
+  kPrismatic,  ///< b slides along `axis` of a without turning. Coordinate: the way, m.
+  kWheel,      ///< b turns freely and slides along `axis` on a spring. 2D. Coordinate: the way.
+  kWeld,       ///< b keeps its pose relative to a; soft where hertz > 0.
+  kMotor,      ///< A weld that yields at force_max and torque_max; `target` is its angle, 2D.
+  kTarget,     ///< anchor_b is drawn to anchor_a on a spring with at most force_max.
+  kGear,       ///< angle_a + ratio angle_b stays; with `axis`, b's way along it (world). 2D.
+  kPulley,     ///< |anchor_a - ground_a| + ratio |anchor_b - ground_b| = length.
+  kCurve,      ///< anchor_b stays on a curve of body a; with limits, between offsets of it. 2D.
+  kUser,       ///< Rows from a function of the user's: World::register_constraint.
+};
+
+/// Curves of a kCurve joint, in the frame of `anchor_a`.
+enum class CurveKind : std::uint32_t {
+  kCircle = 0,  ///< Radius size[0].
+  kEllipse,     ///< Half axes size[0] and size[1].
+  kCycloid,     ///< x = R (t + sin t), y = -R (1 + cos t), |t| <= pi, R = size[0]: a trough.
+  kPolyline,    ///< The chains and polygons of body a.
+};
+
+/// What drives the coordinate of a joint.
+enum class MotorKind : std::uint32_t {
+  kOff = 0,
+  kSpeed,     ///< Holds motor_speed; has no memory of where it was.
+  kPosition,  ///< Holds the coordinate at target + drive_amplitude sin(2 pi drive_hertz t).
 };
 
 template <int D>
@@ -94,32 +120,82 @@ struct JointDef {
   BodyId body_b;
   Vec<D> anchor_a = Vec<D>::zero();  ///< Frame of body a, from its origin, m.
   Vec<D> anchor_b = Vec<D>::zero();
-  float length = 0.0f;         ///< Distance: m; > 0.
-  float hertz = 0.0f;          ///< Distance: spring frequency; 0 is rigid.
-  float damping_ratio = 0.0f;  ///< Distance: of the spring.
-  bool limit_enabled = false;  ///< Revolute, 2D.
-  float lower_angle = 0.0f;    ///< rad, of b relative to a at creation; lower <= upper.
-  float upper_angle = 0.0f;
-  bool motor_enabled = false;     ///< Revolute, 2D.
-  float motor_speed = 0.0f;       ///< rad/s of b relative to a.
-  float motor_torque_max = 0.0f;  ///< N m, >= 0.
+  Vec<D> axis = Vec<D>::zero();  ///< Unit, frame of body a.
+  float length = 0.0f;           ///< m; > 0 for distance; pulley: 0 is what it is at creation.
+  float ratio = 1.0f;            ///< Gear and pulley; not 0.
+
+  /// A damped spring, the same for every mass. Distance and weld: 0 is rigid. Motor and target: 0
+  /// is tuning.joint_hertz. Revolute, prismatic and wheel: about `target`, 0 is none.
+  float hertz = 0.0f;
+  float damping_ratio = 0.0f;
+  float angular_hertz = 0.0f;  ///< Of the rotation of weld and motor.
+  float angular_damping_ratio = 0.0f;
+
+  bool limit_enabled = false;  ///< lower <= coordinate <= upper. Distance: a rope of that length.
+  float lower = 0.0f;          ///< rad of b relative to a at creation, or m; lower <= upper.
+  float upper = 0.0f;
+  MotorKind motor = MotorKind::kOff;
+  float motor_speed = 0.0f;  ///< rad/s of b relative to a, or m/s.
+  float motor_max = 0.0f;    ///< N m or N, >= 0.
+  float target = 0.0f;       ///< rad or m.
+  float drive_amplitude = 0.0f;
+  float drive_hertz = 0.0f;
+
+  float force_max = 0.0f;            ///< Motor and target: N, >= 0.
+  float torque_max = 0.0f;           ///< Motor: N m, >= 0.
+  Vec<D> ground_a = Vec<D>::zero();  ///< Pulley: where the rope turns, world, m.
+  Vec<D> ground_b = Vec<D>::zero();
+  CurveKind curve = CurveKind::kCircle;
+  std::array<float, 2> size{};        ///< Curve: m, > 0.
+  std::uint32_t user_kind = 0;        ///< User: the number the function was registered under.
+  std::array<float, 4> parameters{};  ///< User: for the function.
   bool collide_connected = false;
 };
 
-/// How contact and joint errors are corrected. Both run through the same kernels.
+/// How the errors of contacts and joints are corrected. All run through the same kernels.
 enum class Stabilisation : std::uint32_t {
   kBaumgarte,  ///< bias = (baumgarte / h) (C + slop) in the velocity rows.
   kSoft,       ///< A damped spring per row; then relax sweeps without bias. Catto, Solver2D 2024.
+  kSplitImpulse,  ///< Baumgarte's bias on pseudo-velocities, which move bodies and are forgotten.
+  kNgs,           ///< Position sweeps on re-evaluated errors: non-linear Gauss-Seidel.
+  kXpbd,          ///< Positions are projected, velocities follow. Mueller et al. 2020.
+};
+
+/// In which order one sweep visits the constraints.
+enum class Order : std::uint32_t {
+  kColor,    ///< Colour after colour; the only one that uses lanes and workers.
+  kId,       ///< By the slots of joints, then by those of the shapes in contact.
+  kReverse,  ///< Contacts and joints each in the reverse of kId.
+};
+
+/// Which rows of a contact are solved together instead of one after the other.
+enum class ContactBlockRows : std::uint32_t {
+  kNone,
+  kNormals,  ///< The normals of a manifold: every case of the linear complementarity problem.
+  kNormalFriction,  ///< Normal and tangents of a point: separate, stick or slide.
+};
+
+/// How the equality rows of joints are solved.
+enum class JointSolver : std::uint32_t {
+  kIterated,
+  kDirect,  ///< Exactly, where they form trees; what closes a loop is iterated.
 };
 
 /// The named settings of the one solver.
 struct Tuning {
   std::uint32_t substeps = 4;
-  std::uint32_t sweeps = 1;        ///< Biased sweeps per substep.
-  std::uint32_t relax_sweeps = 1;  ///< Unbiased sweeps after the positions have moved.
+  std::uint32_t sweeps = 1;           ///< Sweeps per substep; biased where the method has a bias.
+  std::uint32_t relax_sweeps = 1;     ///< Unbiased sweeps after the positions have moved.
+  std::uint32_t position_sweeps = 0;  ///< Of kNgs and kXpbd, and pseudo-velocity sweeps.
   Stabilisation stabilisation = Stabilisation::kSoft;
+  Order order = Order::kColor;
+  ContactBlockRows contact_block = ContactBlockRows::kNone;
+  JointSolver joint_solver = JointSolver::kIterated;
+  float warm_starting = 1.0f;    ///< Share of the last impulses to start from: 0 to 1.
+  float over_relaxation = 1.0f;  ///< Factor on each change of an impulse (SOR): above 0, below 2.
   float baumgarte = 0.2f;
   float slop = 0.005f;          ///< m of overlap that is left alone.
+  float correction_max = 0.2f;  ///< m or rad that one position sweep moves a row at most.
   float contact_hertz = 30.0f;  ///< At most an eighth of the substep rate is used.
   float contact_damping_ratio = 10.0f;
   float joint_hertz = 60.0f;  ///< At most a quarter of the substep rate is used.
@@ -127,15 +203,42 @@ struct Tuning {
   float push_speed_max = 3.0f;         ///< m/s at which overlap is resolved at most.
   float restitution_threshold = 1.0f;  ///< m/s of approach below which nothing bounces.
   float speculative_distance = 0.02f;  ///< m of gap at which a contact point is made.
+  float sleep_s = 0.5f;                ///< An island that rests so long is left alone; 0: never.
+  float sleep_speed = 0.05f;           ///< m/s of a body's farthest point below which it rests.
+  std::uint32_t continuous = 1;  ///< 1: Fast bodies stop at what they would pass through in a tick.
 
+  /// Small steps, one soft sweep and one relax sweep each: Soft Step, TGS-Soft (Catto 2024).
   static Tuning soft_step() { return {}; }
   /// Projected Gauss-Seidel with Baumgarte's bias, as in Box2D Lite (Catto, GDC 2006).
-  static Tuning pgs() {
+  static Tuning pgs() { return classic(Stabilisation::kBaumgarte, 10, 0, 0); }
+  /// Overlap leaves through velocities of its own, so that it adds no energy.
+  static Tuning split_impulse() { return classic(Stabilisation::kSplitImpulse, 10, 0, 10); }
+  static Tuning pgs_ngs() { return classic(Stabilisation::kNgs, 8, 0, 3); }
+  /// As Box2D 2.x: the two normals of a manifold at once, in velocity and in position.
+  static Tuning pgs_ngs_block() {
+    Tuning tuning = pgs_ngs();
+    tuning.contact_block = ContactBlockRows::kNormals;
+    return tuning;
+  }
+  static Tuning pgs_soft() { return classic(Stabilisation::kSoft, 4, 2, 0); }
+  static Tuning tgs_ngs() { return classic(Stabilisation::kNgs, 1, 0, 1).in_substeps(4); }
+  static Tuning xpbd() { return classic(Stabilisation::kXpbd, 1, 0, 1).in_substeps(8); }
+
+  Tuning in_substeps(std::uint32_t count) const {
+    Tuning tuning = *this;
+    tuning.substeps = count;
+    return tuning;
+  }
+
+ private:
+  static Tuning classic(Stabilisation stabilisation, std::uint32_t sweeps, std::uint32_t relax,
+                        std::uint32_t position) {
     Tuning tuning;
     tuning.substeps = 1;
-    tuning.sweeps = 10;
-    tuning.relax_sweeps = 0;
-    tuning.stabilisation = Stabilisation::kBaumgarte;
+    tuning.sweeps = sweeps;
+    tuning.relax_sweeps = relax;
+    tuning.position_sweeps = position;
+    tuning.stabilisation = stabilisation;
     return tuning;
   }
 };

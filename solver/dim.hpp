@@ -50,6 +50,7 @@ template <int D>
 struct Dim {
   static_assert(D == 2 || D == 3);
   static constexpr int kSpin = D * (D - 1) / 2;     ///< Rotational freedoms: 1 or 3.
+  static constexpr int kFreedoms = D + kSpin;       ///< Of a body: 3 or 6.
   static constexpr int kTangents = D - 1;           ///< Friction directions per contact point.
   static constexpr int kRotation = D == 2 ? 2 : 4;  ///< (cos, sin) or quaternion (x, y, z, w).
   static constexpr int kManifoldPoints = D == 2 ? 2 : 4;
@@ -138,6 +139,17 @@ Vec<4, T> compose(const Vec<4, T>& a, const Vec<4, T>& b) {
            a[3] * b[1] - a[0] * b[2] + a[1] * b[3] + a[2] * b[0],
            a[3] * b[2] + a[0] * b[1] - a[1] * b[0] + a[2] * b[3],
            a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]}};
+}
+
+/// dq of a small turn [rad] in the world frame.
+template <class T>
+Vec<2, T> turn_derivative(const Vec<1, T>& turn, const Vec<2, T>& q) {
+  return {{-turn[0] * q[1], turn[0] * q[0]}};
+}
+template <class T>
+Vec<4, T> turn_derivative(const Vec<3, T>& turn, const Vec<4, T>& q) {
+  const T half = T(0.5f);
+  return compose(Vec<4, T>{{half * turn[0], half * turn[1], half * turn[2], T(0.0f)}}, q);
 }
 
 template <int N>

@@ -24,4 +24,17 @@ struct BodyMass {
   Inertia<D> inverse_inertia;  ///< World frame at the start of the tick.
 };
 
+/// The rotation by the vector `turn` [rad], exact and not its linearisation: a body that spins
+/// freely keeps its rate.
+Rotation<2> rotation_by(const Spin<2>& turn);
+Rotation<3> rotation_by(const Spin<3>& turn);
+
+/// q' = exp(turn) q, at unit length.
+template <int D>
+void turn_by(const Spin<D>& turn, Motion<D>& motion) {
+  if (dot(turn, turn) == 0.0f) return;
+  motion.delta_rotation =
+      normalized_or(compose(rotation_by(turn), motion.delta_rotation), motion.delta_rotation);
+}
+
 }  // namespace cycloid::solver

@@ -55,6 +55,8 @@ struct Body {
   float linear_damping;
   float angular_damping;
   float gravity_scale;
+  std::uint32_t rest_ticks;  ///< Ticks below tuning.sleep_speed.
+  std::uint32_t asleep;      ///< 1: left alone until something wakes its island.
 };
 
 template <int D>
@@ -89,6 +91,7 @@ struct Contact {
   std::uint32_t touching = 0;
   std::uint32_t point_count = 0;
   std::array<ContactPoint<D>, Dim<D>::kManifoldPoints> points;
+  Spin<D> rolling_impulse;  ///< N m s.
 };
 
 template <int D>
@@ -99,18 +102,35 @@ struct Joint {
   std::uint32_t body_b = kNone;
   Vec<D> anchor_a;  ///< From the centre of mass, body frame, m.
   Vec<D> anchor_b;
+  Vec<D> axis;
   float length;
+  float ratio;
   float hertz;
   float damping_ratio;
+  float angular_hertz;
+  float angular_damping_ratio;
   Rotation<D> reference;  ///< Rotation of b relative to a at creation.
   std::uint32_t limit_enabled;
-  float lower_angle;
-  float upper_angle;
-  std::uint32_t motor_enabled;
+  float lower;
+  float upper;
+  MotorKind motor;
   float motor_speed;
-  float motor_torque_max;
+  float motor_max;
+  float target;
+  float drive_amplitude;
+  float drive_hertz;
+  float force_max;
+  float torque_max;
+  Vec<D> ground_a;
+  Vec<D> ground_b;
+  CurveKind curve;
+  std::array<float, 2> size;
+  std::uint32_t user_kind;
+  std::array<float, 4> parameters;
   std::uint32_t collide_connected;
-  Vec<D> impulse;  ///< Accumulated: of the point, or element 0 along the distance axis, N s.
+  std::array<float, 2> unwrapped;  ///< Gear: angles of a and b, whole turns counted, rad.
+  std::array<float, Dim<D>::kFreedoms> impulse;  ///< Accumulated, of the equality rows, N s, N m s.
+  float spring_impulse;
   float motor_impulse;
   float lower_impulse;
   float upper_impulse;

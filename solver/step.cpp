@@ -4,6 +4,28 @@
 
 namespace cycloid::solver {
 
+/// The velocity methods: impulses first, then positions by velocities, then what the method does
+/// about the errors that are left.
+template <int D, int W>
+static void solve_substep(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                          Workers& workers, StepScratch<D>& scratch) {
+  const Tuning& tuning = context.tuning;
+  integrate_velocities(context, state, workers, scratch);
+  evaluate_joints(state, time_s, workers, scratch);
+  warm_start_constraints<D, W>(workers, scratch);
+  for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep)
+    solve_constraints<D, W>(context, Sweep::kBiased, workers, scratch);
+  if (tuning.stabilisation == Stabilisation::kSplitImpulse)
+    solve_pseudo_velocities<D, W>(context, workers, scratch);
+  integrate_positions(context, state, workers, scratch);
+  if (tuning.stabilisation == Stabilisation::kNgs)
+    for (std::uint32_t sweep = 0; sweep < tuning.position_sweeps; ++sweep)
+      correct_positions<D, W>(context, state, time_s, workers, scratch);
+  if (tuning.relax_sweeps > 0) evaluate_joints(state, time_s, workers, scratch);
+  for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep)
+    solve_constraints<D, W>(context, Sweep::kRelax, workers, scratch);
+}
+
 /// A tick, read aloud. The only place that knows the order of the stages.
 template <int D, int W>
 static void solve_tick(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
@@ -13,15 +35,13 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   prepare_joints(context, state, scratch);
   prepare_contacts<D, W>(context, state, workers, scratch);
 
-  const Tuning& tuning = context.tuning;
-  for (std::uint32_t substep = 0; substep < tuning.substeps; ++substep) {
-    integrate_velocities(context, state, workers, scratch);
-    warm_start_constraints<D, W>(workers, scratch);
-    for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep)
-      solve_constraints<D, W>(context, Sweep::kBiased, workers, scratch);
-    integrate_positions(context, state, workers, scratch);
-    for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep)
-      solve_constraints<D, W>(context, Sweep::kRelax, workers, scratch);
+  const float start_s = static_cast<float>(state.header.tick) * context.tick_s;
+  for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
+    const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
+    if (context.tuning.stabilisation == Stabilisation::kXpbd)
+      project_positions<D, W>(context, state, time_s, workers, scratch);
+    else
+      solve_substep<D, W>(context, state, time_s, workers, scratch);
   }
   apply_restitution<D, W>(context, workers, scratch);
   store_impulses<D, W>(workers, scratch);
@@ -43,27 +63,57 @@ static void solve_in_lanes(int lanes, const StepContext<D>& context, const World
 }
 
 template <int D>
+static bool turns(const WorldState<D>& state, std::uint32_t shape) {
+  const Body<D>& body = state.bodies[state.shapes[shape].body];
+  for (const float value : body.inverse_inertia.m)
+    if (value != 0.0f) return true;
+  return false;
+}
+
+/// What the sweeps solved: rows that cannot act were not built, and are not counted.
+template <int D>
+static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch,
+                       Statistics& statistics) {
+  for (const Contact<D>& contact : state.contacts) {
+    const Material& a = state.materials[state.shapes[contact.shape_a].material];
+    const Material& b = state.materials[state.shapes[contact.shape_b].material];
+    const bool rubs = a.friction * b.friction > 0.0f;
+    const bool rolls = max(a.rolling_resistance, b.rolling_resistance) > 0.0f;
+    const std::uint32_t rows = contact.point_count * (1 + (rubs ? Dim<D>::kTangents : 0)) +
+                               (rolls ? static_cast<std::uint32_t>(Dim<D>::kSpin) : 0);
+    statistics.rows_per_sweep += rows;
+    if (turns(state, contact.shape_a) || turns(state, contact.shape_b))
+      statistics.turning_rows_per_sweep += rows;
+  }
+  for (const JointRow<D>& row : scratch.joint_rows) {
+    const int rows = (row.solved_directly ? 0 : row.rows.count) + (row.spring_enabled ? 1 : 0) +
+                     (row.motor_enabled ? 1 : 0) + (row.limit_enabled ? 2 : 0);
+    statistics.rows_per_sweep += static_cast<std::uint32_t>(rows);
+    if (row.solved_directly) statistics.direct_rows += static_cast<std::uint32_t>(row.rows.count);
+  }
+  const Tuning& tuning = state.header.tuning;
+  statistics.rows = std::uint64_t{statistics.rows_per_sweep} * tuning.substeps *
+                    (tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps);
+}
+
+template <int D>
 static Statistics statistics_of(const WorldState<D>& state, const StepScratch<D>& scratch) {
   Statistics statistics;
   statistics.bodies = static_cast<std::uint32_t>(state.bodies.size() - state.free_bodies.size());
   statistics.pairs = static_cast<std::uint32_t>(scratch.pairs.size());
   statistics.contacts = static_cast<std::uint32_t>(state.contacts.size());
   statistics.colors = static_cast<std::uint32_t>(scratch.contact_coloring.colors.size());
-  for (const Contact<D>& contact : state.contacts)
-    statistics.rows_per_sweep += contact.point_count * (1 + Dim<D>::kTangents);
-  for (const JointRow<D>& row : scratch.joint_rows) {
-    statistics.rows_per_sweep += row.kind == JointKind::kDistance ? 1 : D;
-    statistics.rows_per_sweep += (row.motor_enabled ? 1 : 0) + (row.limit_enabled ? 2 : 0);
-  }
-  const Tuning& tuning = state.header.tuning;
-  statistics.rows = std::uint64_t{statistics.rows_per_sweep} * tuning.substeps *
-                    (tuning.sweeps + tuning.relax_sweeps);
+  count_rows(state, scratch, statistics);
   return statistics;
 }
 
 template <int D>
 Error World<D>::step() {
   if (state_.header.fault.field != kFaultNone) return {Code::kFaulted, "step"};
+  for (const Joint<D>& joint : state_.joints)
+    if (joint.kind == JointKind::kUser &&
+        find_rows_function<D>(scratch_->user_rows, joint.user_kind) == nullptr)
+      return {Code::kInvalid, "user_kind"};
   const StepContext<D> context =
       make_step_context(state_.header.tick_s, state_.header.gravity, state_.header.tuning);
   StepScratch<D>& scratch = *scratch_;

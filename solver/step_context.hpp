@@ -16,6 +16,8 @@ struct StepContext {
   Softness contact;         ///< Between two movable bodies.
   Softness contact_static;  ///< Against a body without mass: twice as stiff.
   Softness joint;
+  Softness pseudo;  ///< Of pseudo-velocity sweeps, which are rigid and biased.
+  Softness motor;   ///< Of position motors without a frequency of their own.
 };
 
 /// Stiffness above a fraction of the substep rate turns into noise: contacts are held to an eighth
@@ -28,22 +30,26 @@ StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuni
   context.inverse_h = static_cast<float>(tuning.substeps) / tick_s;
   context.gravity = gravity;
   context.tuning = tuning;
-  if (tuning.stabilisation == Stabilisation::kBaumgarte) {
-    context.contact = baumgarte_softness(tuning.baumgarte, context.h);
+  const float contact_hertz = min(tuning.contact_hertz, 0.125f * context.inverse_h);
+  const float joint_hertz = min(tuning.joint_hertz, 0.25f * context.inverse_h);
+  context.pseudo = baumgarte_softness(tuning.baumgarte, context.h);
+  context.motor = spring_softness(joint_hertz, tuning.joint_damping_ratio, context.h);
+  if (tuning.stabilisation != Stabilisation::kSoft) {
+    const bool biased = tuning.stabilisation == Stabilisation::kBaumgarte;
+    context.contact = biased ? context.pseudo : kRigid;
     context.contact_static = context.contact;
     context.joint = context.contact;
     return context;
   }
-  const float contact_hertz = min(tuning.contact_hertz, 0.125f * context.inverse_h);
-  const float joint_hertz = min(tuning.joint_hertz, 0.25f * context.inverse_h);
   context.contact = spring_softness(contact_hertz, tuning.contact_damping_ratio, context.h);
   context.contact_static =
       spring_softness(2.0f * contact_hertz, tuning.contact_damping_ratio, context.h);
-  context.joint = spring_softness(joint_hertz, tuning.joint_damping_ratio, context.h);
+  context.joint = context.motor;
   return context;
 }
 
-/// Whether a sweep corrects positions (biased, soft) or only velocities (relax).
-enum class Sweep { kBiased, kRelax };
+/// Whether a sweep corrects positions (biased, soft), only velocities (relax), or pseudo-velocities
+/// that start at zero and answer to overlap alone.
+enum class Sweep { kBiased, kRelax, kPseudo };
 
 }  // namespace cycloid::solver

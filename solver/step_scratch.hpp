@@ -38,6 +38,22 @@ struct ContactBlocks {
   Range overflow;
 };
 
+/// A registered kind of constraint.
+template <int D>
+struct UserRows {
+  std::uint32_t user_kind;
+  RowsFunction<D> function;
+};
+
+/// The function of a kind, or null where none was registered.
+template <int D>
+RowsFunction<D> find_rows_function(const std::vector<UserRows<D>>& registered,
+                                   std::uint32_t user_kind) {
+  for (const UserRows<D>& rows : registered)
+    if (rows.user_kind == user_kind) return rows.function;
+  return nullptr;
+}
+
 /// Everything a step computes and throws away: nothing in here outlives a tick, so nothing in here
 /// is state. Kept between ticks only for its memory.
 template <int D>
@@ -60,7 +76,10 @@ struct StepScratch {
   std::vector<int> live_joints;
   Coloring joint_coloring;  ///< `order` holds joint slots.
   Coloring contact_coloring;
-  std::vector<JointRow<D>> joint_rows;  ///< In the order of joint_coloring.
+  std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.
+  std::vector<Motion<D>> saved_motions;  ///< Of pseudo-velocity sweeps and of XPBD's substep.
+  std::vector<JointRow<D>> saved_rows;
+  std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>
       contact_blocks;  ///< Only that of the chosen width is filled.
 };

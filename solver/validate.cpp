@@ -10,8 +10,17 @@ Error validate(const Tuning& t) {
   if (t.substeps < 1 || t.substeps > 64) return invalid("substeps");
   if (t.sweeps < 1 || t.sweeps > 1000) return invalid("sweeps");
   if (t.relax_sweeps > 1000) return invalid("relax_sweeps");
-  if (t.stabilisation != Stabilisation::kBaumgarte && t.stabilisation != Stabilisation::kSoft)
-    return invalid("stabilisation");
+  if (t.position_sweeps > 1000) return invalid("position_sweeps");
+  if (t.stabilisation > Stabilisation::kXpbd) return invalid("stabilisation");
+  if (t.order > Order::kReverse) return invalid("order");
+  if (t.contact_block > ContactBlockRows::kNormalFriction) return invalid("contact_block");
+  if (t.joint_solver > JointSolver::kDirect) return invalid("joint_solver");
+  if (!within(t.warm_starting, 0.0f, 1.0f)) return invalid("warm_starting");
+  if (!within(t.over_relaxation, 0.01f, 1.99f)) return invalid("over_relaxation");
+  if (!within(t.correction_max, 0.0f, 10.0f)) return invalid("correction_max");
+  if (!within(t.sleep_s, 0.0f, 1.0e6f)) return invalid("sleep_s");
+  if (!within(t.sleep_speed, 0.0f, kSpeedMax)) return invalid("sleep_speed");
+  if (t.continuous > 1) return invalid("continuous");
   if (!within(t.baumgarte, 0.0f, 2.0f)) return invalid("baumgarte");
   if (!within(t.slop, 0.0f, 1.0f)) return invalid("slop");
   if (!within(t.contact_hertz, 1.0e-3f, 1.0e5f)) return invalid("contact_hertz");
@@ -38,6 +47,8 @@ Error validate(const Limits& limits) {
 Error validate(const Material& material, int index) {
   if (!within(material.friction, 0.0f, 1.0e3f)) return invalid("friction", index);
   if (!within(material.restitution, 0.0f, 1.0f)) return invalid("restitution", index);
+  if (!within(material.rolling_resistance, 0.0f, 1.0e3f))
+    return invalid("rolling_resistance", index);
   return {};
 }
 
@@ -130,34 +141,11 @@ Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int
   return {};
 }
 
-template <int D>
-Error validate(const JointDef<D>& def) {
-  if (def.kind != JointKind::kDistance && def.kind != JointKind::kRevolute) return invalid("kind");
-  if (def.body_a == def.body_b) return invalid("body_b");
-  if (!within(def.anchor_a, kSizeMax)) return invalid("anchor_a");
-  if (!within(def.anchor_b, kSizeMax)) return invalid("anchor_b");
-  const bool distance = def.kind == JointKind::kDistance;
-  if (distance && !within(def.length, kSizeMin, kSizeMax)) return invalid("length");
-  if (!within(def.hertz, 0.0f, 1.0e5f)) return invalid("hertz");
-  if (!within(def.damping_ratio, 0.0f, 1.0e3f)) return invalid("damping_ratio");
-  // A limit and a motor act about the one axis of the plane; a ball joint has no such axis.
-  const bool has_axis = !distance && Dim<D>::kSpin == 1;
-  if (def.limit_enabled && !has_axis) return invalid("limit_enabled");
-  if (def.motor_enabled && !has_axis) return invalid("motor_enabled");
-  if (!within(def.lower_angle, -3.2f, 3.2f)) return invalid("lower_angle");
-  if (!within(def.upper_angle, def.lower_angle, 3.2f)) return invalid("upper_angle");
-  if (!within(def.motor_speed, -kSpinMax, kSpinMax)) return invalid("motor_speed");
-  if (!within(def.motor_torque_max, 0.0f, kForceMax)) return invalid("motor_torque_max");
-  return {};
-}
-
 template Error validate(const WorldDef<2>&);
 template Error validate(const WorldDef<3>&);
 template Error validate(const BodyDef<2>&);
 template Error validate(const BodyDef<3>&);
 template Error validate(const ShapeDef<2>&, BodyKind, std::size_t, int);
 template Error validate(const ShapeDef<3>&, BodyKind, std::size_t, int);
-template Error validate(const JointDef<2>&);
-template Error validate(const JointDef<3>&);
 
 }  // namespace cycloid::solver

@@ -29,6 +29,12 @@ bool within(const Vec<N>& vector, float bound) {
   return true;
 }
 
+/// Which kinds have a coordinate that motors drive and which take limits; `spin` is Dim<D>::kSpin.
+bool has_coordinate(JointKind kind, int spin);
+bool has_limits(JointKind kind, int spin);
+/// Largest magnitude of a limit, rad or m: an angle stays within half a turn.
+float limit_max(JointKind kind);
+
 Error validate(const Tuning& tuning);
 Error validate(const Limits& limits);
 Error validate(const Material& material, int index);

@@ -41,6 +41,7 @@ static Error validate_bodies(const WorldState<D>& state) {
     if (!within(body.position, kPositionMax)) return corrupt("body", i);
     const bool moves = body.kind == BodyKind::kDynamic || body.kind == BodyKind::kParticle;
     if (moves != (body.inverse_mass > 0.0f)) return corrupt("body", i);
+    if (body.asleep > 1) return corrupt("body", i);
     if (body.kind == BodyKind::kFree) continue;
     if (!within(dot(body.rotation, body.rotation), 0.99f, 1.01f)) return corrupt("body", i);
     for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
@@ -91,12 +92,18 @@ template <int D>
 static Error validate_joints(const WorldState<D>& state) {
   for (std::size_t i = 0; i < state.joints.size(); ++i) {
     const Joint<D>& joint = state.joints[i];
-    if (joint.kind > JointKind::kRevolute || !is_finite(joint)) return corrupt("joint", i);
+    if (joint.kind > JointKind::kUser || !is_finite(joint)) return corrupt("joint", i);
+    if (joint.motor > MotorKind::kPosition || joint.curve > CurveKind::kPolyline)
+      return corrupt("joint", i);
     if (joint.kind == JointKind::kFree) continue;
     for (const std::uint32_t body : {joint.body_a, joint.body_b})
       if (body >= state.bodies.size() || state.bodies[body].kind == BodyKind::kFree)
         return corrupt("joint", i);
     if (joint.body_a == joint.body_b) return corrupt("joint", i);
+    const bool sized = joint.kind == JointKind::kCurve && joint.curve != CurveKind::kPolyline;
+    if (sized && !(joint.size[0] > 0.0f)) return corrupt("joint", i);
+    if (sized && joint.curve == CurveKind::kEllipse && !(joint.size[1] > 0.0f))
+      return corrupt("joint", i);
   }
   return {};
 }

@@ -13,6 +13,7 @@ template <class R, class F>
 constexpr void visit_fields(R& r, F&& f, const Material*) {
   f("friction", r.friction);
   f("restitution", r.restitution);
+  f("rolling_resistance", r.rolling_resistance);
 }
 
 template <class R, class F, int D>
@@ -36,6 +37,8 @@ constexpr void visit_fields(R& r, F&& f, const Body<D>*) {
   f("linear_damping", r.linear_damping);
   f("angular_damping", r.angular_damping);
   f("gravity_scale", r.gravity_scale);
+  f("rest_ticks", r.rest_ticks);
+  f("asleep", r.asleep);
 }
 
 template <class R, class F, int D>
@@ -71,6 +74,7 @@ constexpr void visit_fields(R& r, F&& f, const Contact<D>*) {
   f("touching", r.touching);
   f("point_count", r.point_count);
   f("points", r.points);
+  f("rolling_impulse", r.rolling_impulse);
 }
 
 template <class R, class F, int D>
@@ -81,18 +85,35 @@ constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
   f("body_b", r.body_b);
   f("anchor_a", r.anchor_a);
   f("anchor_b", r.anchor_b);
+  f("axis", r.axis);
   f("length", r.length);
+  f("ratio", r.ratio);
   f("hertz", r.hertz);
   f("damping_ratio", r.damping_ratio);
+  f("angular_hertz", r.angular_hertz);
+  f("angular_damping_ratio", r.angular_damping_ratio);
   f("reference", r.reference);
   f("limit_enabled", r.limit_enabled);
-  f("lower_angle", r.lower_angle);
-  f("upper_angle", r.upper_angle);
-  f("motor_enabled", r.motor_enabled);
+  f("lower", r.lower);
+  f("upper", r.upper);
+  f("motor", r.motor);
   f("motor_speed", r.motor_speed);
-  f("motor_torque_max", r.motor_torque_max);
+  f("motor_max", r.motor_max);
+  f("target", r.target);
+  f("drive_amplitude", r.drive_amplitude);
+  f("drive_hertz", r.drive_hertz);
+  f("force_max", r.force_max);
+  f("torque_max", r.torque_max);
+  f("ground_a", r.ground_a);
+  f("ground_b", r.ground_b);
+  f("curve", r.curve);
+  f("size", r.size);
+  f("user_kind", r.user_kind);
+  f("parameters", r.parameters);
   f("collide_connected", r.collide_connected);
+  f("unwrapped", r.unwrapped);
   f("impulse", r.impulse);
+  f("spring_impulse", r.spring_impulse);
   f("motor_impulse", r.motor_impulse);
   f("lower_impulse", r.lower_impulse);
   f("upper_impulse", r.upper_impulse);
@@ -103,9 +124,16 @@ constexpr void visit_fields(R& r, F&& f, const Tuning*) {
   f("tuning.substeps", r.substeps);
   f("tuning.sweeps", r.sweeps);
   f("tuning.relax_sweeps", r.relax_sweeps);
+  f("tuning.position_sweeps", r.position_sweeps);
   f("tuning.stabilisation", r.stabilisation);
+  f("tuning.order", r.order);
+  f("tuning.contact_block", r.contact_block);
+  f("tuning.joint_solver", r.joint_solver);
+  f("tuning.warm_starting", r.warm_starting);
+  f("tuning.over_relaxation", r.over_relaxation);
   f("tuning.baumgarte", r.baumgarte);
   f("tuning.slop", r.slop);
+  f("tuning.correction_max", r.correction_max);
   f("tuning.contact_hertz", r.contact_hertz);
   f("tuning.contact_damping_ratio", r.contact_damping_ratio);
   f("tuning.joint_hertz", r.joint_hertz);
@@ -113,6 +141,9 @@ constexpr void visit_fields(R& r, F&& f, const Tuning*) {
   f("tuning.push_speed_max", r.push_speed_max);
   f("tuning.restitution_threshold", r.restitution_threshold);
   f("tuning.speculative_distance", r.speculative_distance);
+  f("tuning.sleep_s", r.sleep_s);
+  f("tuning.sleep_speed", r.sleep_speed);
+  f("tuning.continuous", r.continuous);
 }
 
 template <class R, class F, int D>

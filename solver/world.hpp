@@ -17,6 +17,13 @@ namespace cycloid::solver {
 class Workers;
 template <int D>
 struct StepScratch;
+template <int D>
+struct JointFrame;
+template <int D>
+struct JointRows;
+/// See constraints/rows.hpp.
+template <int D>
+using RowsFunction = void (*)(const JointFrame<D>& frame, JointRows<D>& rows);
 
 /// Two shapes began or ceased to touch in the last step.
 struct ContactEvent {
@@ -35,7 +42,10 @@ struct Statistics {
   std::uint32_t contacts = 0;  ///< Pairs with at least one contact point.
   std::uint32_t colors = 0;
   std::uint32_t rows_per_sweep = 0;
-  std::uint64_t rows = 0;  ///< Rows solved in the step, all sweeps together.
+  std::uint32_t turning_rows_per_sweep = 0;  ///< Contact rows with an angular part.
+  std::uint32_t direct_rows = 0;             ///< Joint rows that the tree solver solves at once.
+  std::uint32_t asleep = 0;                  ///< Bodies that were left alone.
+  std::uint64_t rows = 0;                    ///< Rows solved in the step, all sweeps together.
 };
 
 /// A body as a user sees it: the pose of its frame, not of its centre of mass.
@@ -84,6 +94,10 @@ class World {
   Error destroy_body(BodyId id);
   Result<JointId> create_joint(const JointDef<D>& def);
   Error destroy_joint(JointId id);
+  /// Makes kUser joints of this number possible. Not part of the state: register the same functions
+  /// in every process, before the first joint, restore or step; a step with a kind that is missing
+  /// returns kInvalid "user_kind" and changes nothing.
+  void register_constraint(std::uint32_t user_kind, RowsFunction<D> function);
 
   Error apply_force(BodyId id, const Vec<D>& force_n);  ///< At the centre of mass.
   Error apply_torque(BodyId id, const Spin<D>& torque_n_m);
@@ -97,8 +111,13 @@ class World {
   Error set_mass(BodyId id, float mass_kg);  ///< Scales the inertia with it.
   Error set_material(std::uint32_t material, const Material& values);
   Error set_filter(BodyId id, std::uint32_t shape, const Filter& filter);
-  Error set_motor(JointId id, bool enabled, float speed, float torque_max);
-  Error set_limits(JointId id, bool enabled, float lower_angle, float upper_angle);
+  /// @param max  N m or N.
+  Error set_motor(JointId id, bool enabled, float speed, float max);
+  /// A position motor: holds the coordinate at `target` [rad or m] with at most `max`.
+  Error set_target(JointId id, float target, float max);
+  /// Where on body a the joint holds on, in the frame of that body; moves the point of a mouse.
+  Error set_anchor(JointId id, const Vec<D>& anchor_a);
+  Error set_limits(JointId id, bool enabled, float lower, float upper);
   Error set_spring(JointId id, float length, float hertz, float damping_ratio);
   Error set_tuning(const Tuning& tuning);
 
@@ -175,6 +194,6 @@ std::vector<Difference> differences(const WorldState<D>& a, const WorldState<D>&
 
 /// Names, for a digest and a handshake, the arithmetic of this solver: equal versions give equal
 /// bits. Raised by every commit that re-mints goldens.
-inline constexpr std::uint32_t kSolverVersion = 1;
+inline constexpr std::uint32_t kSolverVersion = 2;
 
 }  // namespace cycloid::solver

@@ -1,5 +1,7 @@
 #include <algorithm>
 
+#include "solver/constraints/joints/unwrap.hpp"
+#include "solver/constraints/rows.hpp"
 #include "solver/events.hpp"
 #include "solver/mass.hpp"
 #include "solver/shapes.hpp"
@@ -147,12 +149,67 @@ static Vec<D> anchor_from(const Body<D>& body, const Vec<D>& anchor) {
   return anchor - body.local_center;
 }
 
-/// b relative to a: a^-1 b.
-static Rotation<2> relative(const Rotation<2>& a, const Rotation<2>& b) {
-  return compose(Rotation<2>{{a[0], -a[1]}}, b);
+template <int D>
+static Joint<D> joint_from(const JointDef<D>& def, const Body<D>& a, const Body<D>& b) {
+  Joint<D> joint{};
+  joint.kind = def.kind;
+  joint.body_a = def.body_a.index;
+  joint.body_b = def.body_b.index;
+  joint.anchor_a = anchor_from(a, def.anchor_a);
+  joint.anchor_b = anchor_from(b, def.anchor_b);
+  joint.axis = def.axis;
+  joint.length = def.length;
+  joint.ratio = def.ratio;
+  joint.hertz = def.hertz;
+  joint.damping_ratio = def.damping_ratio;
+  joint.angular_hertz = def.angular_hertz;
+  joint.angular_damping_ratio = def.angular_damping_ratio;
+  joint.reference = compose(conjugate(a.rotation), b.rotation);
+  joint.limit_enabled = def.limit_enabled ? 1 : 0;
+  joint.lower = def.lower;
+  joint.upper = def.upper;
+  joint.motor = def.motor;
+  joint.motor_speed = def.motor_speed;
+  joint.motor_max = def.motor_max;
+  joint.target = def.target;
+  joint.drive_amplitude = def.drive_amplitude;
+  joint.drive_hertz = def.drive_hertz;
+  joint.force_max = def.force_max;
+  joint.torque_max = def.torque_max;
+  joint.ground_a = def.ground_a;
+  joint.ground_b = def.ground_b;
+  joint.curve = def.curve;
+  joint.size = def.size;
+  joint.user_kind = def.user_kind;
+  joint.parameters = def.parameters;
+  joint.collide_connected = def.collide_connected ? 1 : 0;
+  return joint;
 }
-static Rotation<3> relative(const Rotation<3>& a, const Rotation<3>& b) {
-  return compose(Rotation<3>{{-a[0], -a[1], -a[2], a[3]}}, b);
+
+/// What a joint takes from the poses at its creation: the sum of a gear's angles, the length of a
+/// pulley's rope where none is given.
+template <int D>
+static void take_rest_values(const WorldState<D>& state, Joint<D>& joint) {
+  const Body<D>& a = state.bodies[joint.body_a];
+  const Body<D>& b = state.bodies[joint.body_b];
+  joint.unwrapped = {unwrapped_angle(a.rotation, 0.0f), unwrapped_angle(b.rotation, 0.0f)};
+  const bool rope_of_its_own = joint.kind == JointKind::kPulley && joint.length == 0.0f;
+  if (joint.kind != JointKind::kGear && !rope_of_its_own) return;
+  JointRows<D> rows;
+  rows_of(
+      make_frame(state, joint, a.position, b.position - a.position, a.rotation, b.rotation, 0.0f),
+      rows);
+  if (joint.kind == JointKind::kGear) joint.target = rows.rows[0].error;
+  if (rope_of_its_own) joint.length = rows.has_axis ? rows.axis.error : rows.rows[0].error;
+}
+
+template <int D>
+static bool has_outline(const WorldState<D>& state, std::uint32_t body) {
+  for (std::uint32_t s = state.bodies[body].first_shape; s != kNone; s = state.shapes[s].next) {
+    const ShapeKind kind = state.shapes[s].kind;
+    if (kind == ShapeKind::kSegment || kind == ShapeKind::kPolygon) return true;
+  }
+  return false;
 }
 
 template <int D>
@@ -163,28 +220,19 @@ Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
   const Body<D>& a = state_.bodies[def.body_a.index];
   const Body<D>& b = state_.bodies[def.body_b.index];
   if (a.inverse_mass == 0.0f && b.inverse_mass == 0.0f) return Error{Code::kInvalid, "body_b"};
+  if (def.kind == JointKind::kUser &&
+      find_rows_function<D>(scratch_->user_rows, def.user_kind) == nullptr)
+    return Error{Code::kInvalid, "user_kind"};
+  if (def.kind == JointKind::kCurve && def.curve == CurveKind::kPolyline &&
+      !has_outline(state_, def.body_a.index))
+    return Error{Code::kInvalid, "curve"};
   if (!has_room(state_.joints, state_.free_joints, 1, state_.header.limits.joints))
     return Error{Code::kCapacity, "limits.joints"};
 
   const std::uint32_t index = take_slot(state_.joints, state_.free_joints);
-  Joint<D> joint{};
+  Joint<D> joint = joint_from(def, a, b);
   joint.generation = state_.joints[index].generation;
-  joint.kind = def.kind;
-  joint.body_a = def.body_a.index;
-  joint.body_b = def.body_b.index;
-  joint.anchor_a = anchor_from(a, def.anchor_a);
-  joint.anchor_b = anchor_from(b, def.anchor_b);
-  joint.length = def.length;
-  joint.hertz = def.hertz;
-  joint.damping_ratio = def.damping_ratio;
-  joint.reference = relative(a.rotation, b.rotation);
-  joint.limit_enabled = def.limit_enabled ? 1 : 0;
-  joint.lower_angle = def.lower_angle;
-  joint.upper_angle = def.upper_angle;
-  joint.motor_enabled = def.motor_enabled ? 1 : 0;
-  joint.motor_speed = def.motor_speed;
-  joint.motor_torque_max = def.motor_torque_max;
-  joint.collide_connected = def.collide_connected ? 1 : 0;
+  take_rest_values(state_, joint);
   state_.joints[index] = joint;
   return JointId{index, joint.generation};
 }
@@ -198,6 +246,18 @@ Error World<D>::destroy_joint(JointId id) {
   return {};
 }
 
+template <int D>
+void World<D>::register_constraint(std::uint32_t user_kind, RowsFunction<D> function) {
+  for (UserRows<D>& rows : scratch_->user_rows)
+    if (rows.user_kind == user_kind) {
+      rows.function = function;
+      return;
+    }
+  scratch_->user_rows.push_back({user_kind, function});
+}
+
+template void World<2>::register_constraint(std::uint32_t, RowsFunction<2>);
+template void World<3>::register_constraint(std::uint32_t, RowsFunction<3>);
 template Result<BodyId> World<2>::create_body(const BodyDef<2>&, std::span<const ShapeDef<2>>);
 template Result<BodyId> World<3>::create_body(const BodyDef<3>&, std::span<const ShapeDef<3>>);
 template Error World<2>::destroy_body(BodyId);

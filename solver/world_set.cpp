@@ -136,30 +136,56 @@ Error World<D>::set_filter(BodyId id, std::uint32_t shape, const Filter& filter)
 }
 
 template <int D>
-Error World<D>::set_motor(JointId id, bool enabled, float speed, float torque_max) {
+static bool is_drivable(const Joint<D>& joint) {
+  return has_coordinate(joint.kind, Dim<D>::kSpin);
+}
+
+template <int D>
+Error World<D>::set_motor(JointId id, bool enabled, float speed, float max) {
   if (const Error error = check(id); !error.ok()) return error;
   Joint<D>& joint = state_.joints[id.index];
-  const bool has_axis = joint.kind == JointKind::kRevolute && Dim<D>::kSpin == 1;
-  if (enabled && !has_axis) return invalid("enabled");
+  if (enabled && !is_drivable(joint)) return invalid("enabled");
   if (!within(speed, -kSpinMax, kSpinMax)) return invalid("speed");
-  if (!within(torque_max, 0.0f, kForceMax)) return invalid("torque_max");
-  joint.motor_enabled = enabled ? 1 : 0;
+  if (!within(max, 0.0f, kForceMax)) return invalid("max");
+  joint.motor = enabled ? MotorKind::kSpeed : MotorKind::kOff;
   joint.motor_speed = speed;
-  joint.motor_torque_max = torque_max;
+  joint.motor_max = max;
   return {};
 }
 
 template <int D>
-Error World<D>::set_limits(JointId id, bool enabled, float lower_angle, float upper_angle) {
+Error World<D>::set_target(JointId id, float target, float max) {
   if (const Error error = check(id); !error.ok()) return error;
   Joint<D>& joint = state_.joints[id.index];
-  const bool has_axis = joint.kind == JointKind::kRevolute && Dim<D>::kSpin == 1;
-  if (enabled && !has_axis) return invalid("enabled");
-  if (!within(lower_angle, -3.2f, 3.2f)) return invalid("lower_angle");
-  if (!within(upper_angle, lower_angle, 3.2f)) return invalid("upper_angle");
+  if (!is_drivable(joint) || joint.kind == JointKind::kWheel) return invalid("joint");
+  if (!within(target, -kSizeMax, kSizeMax)) return invalid("target");
+  if (!within(max, 0.0f, kForceMax)) return invalid("max");
+  joint.motor = MotorKind::kPosition;
+  joint.target = target;
+  joint.motor_max = max;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_anchor(JointId id, const Vec<D>& anchor_a) {
+  if (const Error error = check(id); !error.ok()) return error;
+  if (!within(anchor_a, kSizeMax)) return invalid("anchor_a");
+  Joint<D>& joint = state_.joints[id.index];
+  joint.anchor_a = anchor_a - state_.bodies[joint.body_a].local_center;
+  return {};
+}
+
+template <int D>
+Error World<D>::set_limits(JointId id, bool enabled, float lower, float upper) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Joint<D>& joint = state_.joints[id.index];
+  if (enabled && !has_limits(joint.kind, Dim<D>::kSpin)) return invalid("enabled");
+  const float bound = limit_max(joint.kind);
+  if (!within(lower, -bound, bound)) return invalid("lower");
+  if (!within(upper, lower, bound)) return invalid("upper");
   joint.limit_enabled = enabled ? 1 : 0;
-  joint.lower_angle = lower_angle;
-  joint.upper_angle = upper_angle;
+  joint.lower = lower;
+  joint.upper = upper;
   return {};
 }
 
@@ -177,10 +203,33 @@ Error World<D>::set_spring(JointId id, float length, float hertz, float damping_
   return {};
 }
 
+/// An impulse is a force times h: what was found for one step length is scaled to the other, or the
+/// next tick starts with too much or too little of it.
+template <int D>
+static void scale_impulses(float scale, WorldState<D>& state) {
+  for (Contact<D>& contact : state.contacts) {
+    for (ContactPoint<D>& point : contact.points) {
+      point.normal_impulse *= scale;
+      point.tangent_impulse = scale * point.tangent_impulse;
+    }
+    contact.rolling_impulse = scale * contact.rolling_impulse;
+  }
+  for (Joint<D>& joint : state.joints) {
+    if (joint.kind == JointKind::kFree) continue;
+    for (float& impulse : joint.impulse) impulse *= scale;
+    for (float* impulse :
+         {&joint.spring_impulse, &joint.motor_impulse, &joint.lower_impulse, &joint.upper_impulse})
+      *impulse *= scale;
+  }
+}
+
 template <int D>
 Error World<D>::set_tuning(const Tuning& tuning) {
   if (const Error error = validate(tuning); !error.ok()) return error;
-  state_.header.tuning = tuning;
+  Tuning& old = state_.header.tuning;
+  if (tuning.substeps != old.substeps)
+    scale_impulses(static_cast<float>(old.substeps) / static_cast<float>(tuning.substeps), state_);
+  old = tuning;
   return {};
 }
 
@@ -226,6 +275,10 @@ template Error World<2>::set_mass(BodyId, float);
 template Error World<2>::set_material(std::uint32_t, const Material&);
 template Error World<2>::set_filter(BodyId, std::uint32_t, const Filter&);
 template Error World<2>::set_motor(JointId, bool, float, float);
+template Error World<2>::set_target(JointId, float, float);
+template Error World<2>::set_anchor(JointId, const Vec<2>&);
+template Error World<3>::set_target(JointId, float, float);
+template Error World<3>::set_anchor(JointId, const Vec<3>&);
 template Error World<2>::set_limits(JointId, bool, float, float);
 template Error World<2>::set_spring(JointId, float, float, float);
 template Error World<2>::set_tuning(const Tuning&);

@@ -25,8 +25,11 @@ struct ContactBlock {
     L adjusted_separation;  ///< separation - n . (r_b - r_a): the part that no motion changes.
     L normal_mass;
     L tangent_mass[kTangents];
-    L relative_velocity;  ///< Along n at the start of the tick: what restitution answers to.
+    L approach_speed;  ///< Along n at the start of the tick, negative when closing, m/s.
+    L impact_energy;   ///< Of the approach at the moment of touch, per kg: restitution.hpp.
     L normal_impulse;
+    L position_impulse;    ///< Of XPBD's position pass in this substep, kg m.
+    L saved_impulse;       ///< The normal impulse while pseudo-velocities are solved.
     L max_normal_impulse;  ///< Over the tick's sweeps: whether the point pushed at all.
     L tangent_impulse[kTangents];
   };
@@ -41,10 +44,18 @@ struct ContactBlock {
   L share_b;  ///< m_b^-1 / (m_a^-1 + m_b^-1): how far a contact point follows body b.
   L friction;
   L restitution;
+  L pull;          ///< Acceleration of b towards a along the normal by gravity and forces, m/s^2.
+  L rolling;       ///< Rolling resistance times radius: moment over normal impulse, m.
+  L rolling_mass;  ///< (I_a^-1 + I_b^-1)^-1, kg m^2.
+  Spin<D, L> rolling_impulse;
   L bias_rate;
   L mass_scale;
   L impulse_scale;
   std::uint32_t point_count;  ///< The most points of any lane.
+  bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
+  bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
+  bool rolls;                 ///< Some lane resists rolling.
+  bool bounces;               ///< Some lane restitutes.
   Point points[Dim<D>::kManifoldPoints];
 };
 
@@ -78,8 +89,65 @@ Lanes<W> relative_speed(const Vec<D, Lanes<W>>& direction, const Arms<D, Lanes<W
 template <int D, int W>
 void apply_pair(const Vec<D, Lanes<W>>& impulse, const Arms<D, Lanes<W>>& arms,
                 const ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  if (!block.turns) {
+    a.velocity -= block.mass_a.inverse_mass * impulse;
+    b.velocity += block.mass_b.inverse_mass * impulse;
+    return;
+  }
   apply_impulse(-impulse, arms.r_a, block.mass_a, a);
   apply_impulse(impulse, arms.r_b, block.mass_b, b);
+}
+
+/// How one sweep treats the normal row of a point.
+template <int W>
+struct NormalRow {
+  Lanes<W> separation;
+  Lanes<W> bias;  ///< m/s
+  Lanes<W> mass_scale;
+  Lanes<W> impulse_scale;
+};
+
+/// Separation along the normal of the tick's start at the present poses.
+template <int D, int W>
+Lanes<W> separation_of(const ContactBlock<D, W>& block,
+                       const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
+                       const MotionLanes<D, W>& b) {
+  const Vec<D, Lanes<W>> moved = (b.delta_position - a.delta_position) +
+                                 rotate(b.delta_rotation, point.r_b) -
+                                 rotate(a.delta_rotation, point.r_a);
+  return point.adjusted_separation + dot(moved, block.normal);
+}
+
+/// A gap s > 0 may be closed but not crossed in this substep: bias = s / h. Overlap beyond the slop
+/// is pushed out by the block's softness, at most at `push_speed_max`. Pseudo-velocities answer to
+/// overlap alone: what is apart may not come closer by them.
+template <int D, int W>
+NormalRow<W> normal_row(const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
+                        const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
+                        const MotionLanes<D, W>& b) {
+  using L = Lanes<W>;
+  NormalRow<W> row;
+  row.separation = separation_of(block, point, a, b);
+  const auto apart = row.separation > L(0.0f);
+  const L gap = sweep == Sweep::kPseudo ? L(0.0f) : L(context.inverse_h);
+  row.bias = select(apart, row.separation * gap, L(0.0f));
+  row.mass_scale = L(1.0f);
+  row.impulse_scale = L(0.0f);
+  if (sweep == Sweep::kRelax) return row;
+  const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : block.bias_rate;
+  const L overlap = min(row.separation + L(context.tuning.slop), L(0.0f));
+  row.bias = select(apart, row.bias, max(rate * overlap, L(-context.tuning.push_speed_max)));
+  if (sweep == Sweep::kPseudo) return row;
+  row.mass_scale = select(apart, row.mass_scale, block.mass_scale);
+  row.impulse_scale = select(apart, row.impulse_scale, block.impulse_scale);
+  return row;
+}
+
+template <int D, int W>
+void turn_pair(const Spin<D, Lanes<W>>& impulse, const ContactBlock<D, W>& block,
+               MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  a.spin -= turned_by<D, W>(block.mass_a, impulse);
+  b.spin += turned_by<D, W>(block.mass_b, impulse);
 }
 
 template <int D, int W>
@@ -93,31 +161,41 @@ void warm_start(const ContactBlock<D, W>& block, std::span<Motion<D>> motions) {
       impulse += point.tangent_impulse[t] * block.tangent[t];
     apply_pair(impulse, arms_of(block, point, a, b), block, a, b);
   }
+  if (block.rolls) turn_pair(block.rolling_impulse, block, a, b);
   scatter(a, block.mass_a, block.body_a, motions);
   scatter(b, block.mass_b, block.body_b, motions);
 }
 
-/// Coulomb friction of one point against its normal impulse: in the plane the
-/// impulse is held to an interval, in space to a disc.
+/// Holds an impulse of N components to a length of at most `bound`; in the plane an interval.
+template <int N, class L>
+void hold_to_cone(const L& bound, L (&impulse)[N]) {
+  if constexpr (N == 1) {
+    impulse[0] = max(-bound, min(impulse[0], bound));
+  } else {
+    L square = impulse[0] * impulse[0];
+    for (int i = 1; i < N; ++i) square += impulse[i] * impulse[i];
+    const L size = sqrt(square);
+    const L scale = select(size > bound, bound / max(size, L(1.0e-30f)), L(1.0f));
+    for (int i = 0; i < N; ++i) impulse[i] = scale * impulse[i];
+  }
+}
+
+/// Coulomb friction of one point against its normal impulse: in the plane the impulse is held to an
+/// interval, in space to a disc.
 template <int D, int W>
-void solve_friction(ContactBlock<D, W>& block, typename ContactBlock<D, W>::Point& point,
-                    MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+void solve_friction(const StepContext<D>& context, ContactBlock<D, W>& block,
+                    typename ContactBlock<D, W>::Point& point, MotionLanes<D, W>& a,
+                    MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   constexpr int kTangents = Dim<D>::kTangents;
   const Arms<D, L> arms = arms_of(block, point, a, b);
-  const L bound = block.friction * point.normal_impulse;
   L wanted[kTangents];
   for (int t = 0; t < kTangents; ++t) {
     const L speed = relative_speed(block.tangent[t], arms, a, b);
-    wanted[t] = point.tangent_impulse[t] - point.tangent_mass[t] * speed;
+    wanted[t] = point.tangent_impulse[t] -
+                L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed;
   }
-  if constexpr (kTangents == 1) {
-    wanted[0] = max(-bound, min(wanted[0], bound));
-  } else {
-    const L size = sqrt(wanted[0] * wanted[0] + wanted[1] * wanted[1]);
-    const L scale = select(size > bound, bound / max(size, L(1.0e-30f)), L(1.0f));
-    for (int t = 0; t < kTangents; ++t) wanted[t] = scale * wanted[t];
-  }
+  hold_to_cone<kTangents>(block.friction * point.normal_impulse, wanted);
   Vec<D, L> impulse = Vec<D, L>::zero();
   for (int t = 0; t < kTangents; ++t) {
     impulse += (wanted[t] - point.tangent_impulse[t]) * block.tangent[t];
@@ -126,81 +204,53 @@ void solve_friction(ContactBlock<D, W>& block, typename ContactBlock<D, W>::Poin
   apply_pair(impulse, arms, block, a, b);
 }
 
-/// The normal row. A gap s > 0 may be closed but not crossed in this substep: bias = s / h. Overlap
-/// beyond the slop is pushed out by the block's softness, at most at `push_speed_max`.
+/// Clamps the accumulated impulse, not its change: a sweep may take back what an earlier one gave.
 template <int D, int W>
-void solve_normal(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
-                  typename ContactBlock<D, W>::Point& point, MotionLanes<D, W>& a,
-                  MotionLanes<D, W>& b) {
-  using L = Lanes<W>;
-  const Vec<D, L> moved = (b.delta_position - a.delta_position) +
-                          rotate(b.delta_rotation, point.r_b) - rotate(a.delta_rotation, point.r_a);
-  const L separation = point.adjusted_separation + dot(moved, block.normal);
-  const auto apart = separation > L(0.0f);
-  L bias = select(apart, separation * L(context.inverse_h), L(0.0f));
-  L mass_scale = L(1.0f);
-  L impulse_scale = L(0.0f);
-  if (sweep == Sweep::kBiased) {
-    const L overlap = min(separation + L(context.tuning.slop), L(0.0f));
-    const L push = max(block.bias_rate * overlap, L(-context.tuning.push_speed_max));
-    bias = select(apart, bias, push);
-    mass_scale = select(apart, mass_scale, block.mass_scale);
-    impulse_scale = select(apart, impulse_scale, block.impulse_scale);
-  }
-  const Arms<D, L> arms = arms_of(block, point, a, b);
-  const L speed = relative_speed(block.normal, arms, a, b);
-  const L change =
-      -point.normal_mass * mass_scale * (speed + bias) - impulse_scale * point.normal_impulse;
-  const L accumulated = max(point.normal_impulse + change, L(0.0f));
-  const L applied = accumulated - point.normal_impulse;
+void set_normal_impulse(const Lanes<W>& wanted, const Arms<D, Lanes<W>>& arms,
+                        const ContactBlock<D, W>& block, typename ContactBlock<D, W>::Point& point,
+                        MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  const Lanes<W> accumulated = max(wanted, Lanes<W>(0.0f));
+  const Lanes<W> applied = accumulated - point.normal_impulse;
   point.normal_impulse = accumulated;
   point.max_normal_impulse = max(point.max_normal_impulse, accumulated);
   apply_pair(applied * block.normal, arms, block, a, b);
 }
 
-/// One sweep over the block: normals first, so that friction is held to the impulse of this sweep.
-/// The other way round a relax sweep would hold it to the softened impulse of the biased sweep,
-/// which is 3 % too small: a box on a slope then accelerates too fast.
+/// The normal row: 0 <= normal impulse.
 template <int D, int W>
-void solve(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
-           std::span<Motion<D>> motions) {
-  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
-  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
-  for (std::uint32_t i = 0; i < block.point_count; ++i)
-    solve_normal(context, sweep, block, block.points[i], a, b);
-  for (std::uint32_t i = 0; i < block.point_count; ++i)
-    solve_friction(block, block.points[i], a, b);
-  scatter(a, block.mass_a, block.body_a, motions);
-  scatter(b, block.mass_b, block.body_b, motions);
+void solve_normal(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
+                  typename ContactBlock<D, W>::Point& point, MotionLanes<D, W>& a,
+                  MotionLanes<D, W>& b) {
+  using L = Lanes<W>;
+  const NormalRow<W> row = normal_row(context, sweep, block, point, a, b);
+  const Arms<D, L> arms = arms_of(block, point, a, b);
+  const L speed = relative_speed(block.normal, arms, a, b);
+  const L change = -point.normal_mass * row.mass_scale * (speed + row.bias) -
+                   row.impulse_scale * point.normal_impulse;
+  set_normal_impulse(point.normal_impulse + L(context.tuning.over_relaxation) * change, arms, block,
+                     point, a, b);
 }
 
-/// v+ = -e v-, for points that approached faster than the threshold and pushed in this tick.
+/// Rolling resistance: Cdot = w_b - w_a, |impulse| <= rolling * sum of the normal impulses, N m s.
+/// Source: Coulomb's law of rolling; the coefficient times the radius is the lever of the normal
+/// force.
 template <int D, int W>
-void restitute(const StepContext<D>& context, ContactBlock<D, W>& block,
-               std::span<Motion<D>> motions) {
+void solve_rolling(ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   using L = Lanes<W>;
-  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
-  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
-  for (std::uint32_t i = 0; i < block.point_count; ++i) {
-    auto& point = block.points[i];
-    const Arms<D, L> arms = arms_of(block, point, a, b);
-    const L speed = relative_speed(block.normal, arms, a, b);
-    const L wanted =
-        max(point.normal_impulse -
-                point.normal_mass * (speed + block.restitution * point.relative_velocity),
-            L(0.0f));
-    const auto fast = point.relative_velocity < L(-context.tuning.restitution_threshold);
-    const auto pushed = point.max_normal_impulse > L(0.0f);
-    const auto bounces = block.restitution > L(0.0f);
-    const L accumulated = select(
-        fast, select(pushed, select(bounces, wanted, point.normal_impulse), point.normal_impulse),
-        point.normal_impulse);
-    const L applied = accumulated - point.normal_impulse;
-    point.normal_impulse = accumulated;
-    apply_pair(applied * block.normal, arms, block, a, b);
+  constexpr int kSpin = Dim<D>::kSpin;
+  L normal_impulse = L(0.0f);
+  for (std::uint32_t i = 0; i < block.point_count; ++i)
+    normal_impulse += block.points[i].normal_impulse;
+  L wanted[kSpin];
+  for (int i = 0; i < kSpin; ++i)
+    wanted[i] = block.rolling_impulse[i] - block.rolling_mass * (b.spin[i] - a.spin[i]);
+  hold_to_cone<kSpin>(block.rolling * normal_impulse, wanted);
+  Spin<D, L> change;
+  for (int i = 0; i < kSpin; ++i) {
+    change[i] = wanted[i] - block.rolling_impulse[i];
+    block.rolling_impulse[i] = wanted[i];
   }
-  scatter(a, block.mass_a, block.body_a, motions);
-  scatter(b, block.mass_b, block.body_b, motions);
+  turn_pair(change, block, a, b);
 }
 
 }  // namespace cycloid::solver

@@ -2,61 +2,78 @@
 
 #include <span>
 
+#include "solver/constraints/block.hpp"
+#include "solver/constraints/rows.hpp"
 #include "solver/motion.hpp"
 #include "solver/step_context.hpp"
 
 namespace cycloid::solver {
 
-/// One joint during a tick: what `prepare` computed of it and the impulses it accumulates.
+/// One joint during a tick: its rows at the present poses and the impulses they accumulate.
 template <int D>
 struct JointRow {
+  static constexpr int kRows = Dim<D>::kFreedoms;
+
   std::uint32_t joint;  ///< Slot.
-  JointKind kind;
   std::uint32_t body_a;
   std::uint32_t body_b;
+  RowsFunction<D> rows_function;
   BodyMass<D> mass_a;
   BodyMass<D> mass_b;
-  Vec<D> r_a;  ///< Anchors from the centres, world axes, at the start of the tick, m.
-  Vec<D> r_b;
   Vec<D> centre_offset;  ///< Centre of b from centre of a, at the start of the tick, m.
-  Rotation<D> angle;     ///< Of b relative to a since creation, at the start of the tick.
-  float length;
-  Softness spring;  ///< Distance with hertz > 0; kRigid otherwise.
-  bool is_spring;
+
+  JointRows<D> rows;
+  BlockFactor<kRows> blocks[2];  ///< Of the equalities before `rows.split`, and from it on.
+  float axis_mass;               ///< K^-1 of the coordinate and of the motor's row.
+  float motor_mass;
+
+  Softness spring_of[2];  ///< Of the blocks; meant where is_spring.
+  bool is_spring[2];
+  float impulse_max[2];  ///< N s and N m s; length of a block's impulse.
+  bool solved_directly;  ///< The equalities belong to the tree solver.
+
+  bool spring_enabled;
   bool limit_enabled;
   bool motor_enabled;
-  float lower_angle;
-  float upper_angle;
+  Softness spring;  ///< Of the coordinate, or of a position motor.
+  float spring_rest;
+  float lower;
+  float upper;
   float motor_speed;
-  float motor_torque_max;
-  Vec<D> impulse;
+  float motor_impulse_max;
+  bool motor_holds_position;
+  float target_rate;  ///< Of a driven target, per s.
+
+  float impulse[kRows];
+  float spring_impulse;
   float motor_impulse;
   float lower_impulse;
   float upper_impulse;
 };
 
-/// Applies +impulse to b at r_b and -impulse to a at r_a.
 template <int D>
-void apply_pair(const JointRow<D>& row, const Vec<D>& impulse, const Vec<D>& r_a, const Vec<D>& r_b,
-                Motion<D>& a, Motion<D>& b) {
-  a.velocity -= row.mass_a.inverse_mass * impulse;
-  a.spin -= row.mass_a.inverse_inertia * moment(r_a, impulse);
-  b.velocity += row.mass_b.inverse_mass * impulse;
-  b.spin += row.mass_b.inverse_inertia * moment(r_b, impulse);
+float row_speed(const Row<D>& row, const Motion<D>& a, const Motion<D>& b) {
+  return (dot(row.linear_a, a.velocity) + dot(row.angular_a, a.spin)) +
+         (dot(row.linear_b, b.velocity) + dot(row.angular_b, b.spin)) + row.rate;
 }
 
-/// v_b + w_b x r_b - v_a - w_a x r_a.
+/// v += M^-1 J^T lambda.
 template <int D>
-Vec<D> anchor_velocity(const Motion<D>& a, const Vec<D>& r_a, const Motion<D>& b,
-                       const Vec<D>& r_b) {
-  return (b.velocity + spin_cross(b.spin, r_b)) - (a.velocity + spin_cross(a.spin, r_a));
+void apply_row(const JointRow<D>& joint, const Row<D>& row, float impulse, Motion<D>& a,
+               Motion<D>& b) {
+  a.velocity += (joint.mass_a.inverse_mass * impulse) * row.linear_a;
+  a.spin += joint.mass_a.inverse_inertia * (impulse * row.angular_a);
+  b.velocity += (joint.mass_b.inverse_mass * impulse) * row.linear_b;
+  b.spin += joint.mass_b.inverse_inertia * (impulse * row.angular_b);
 }
 
-/// Anchor b from anchor a now, m.
+/// J_i M^-1 J_j^T.
 template <int D>
-Vec<D> anchor_offset(const JointRow<D>& row, const Motion<D>& a, const Vec<D>& r_a,
-                     const Motion<D>& b, const Vec<D>& r_b) {
-  return (b.delta_position - a.delta_position) + row.centre_offset + (r_b - r_a);
+float row_coupling(const JointRow<D>& joint, const Row<D>& i, const Row<D>& j) {
+  return (joint.mass_a.inverse_mass * dot(i.linear_a, j.linear_a) +
+          dot(i.angular_a, joint.mass_a.inverse_inertia * j.angular_a)) +
+         (joint.mass_b.inverse_mass * dot(i.linear_b, j.linear_b) +
+          dot(i.angular_b, joint.mass_b.inverse_inertia * j.angular_b));
 }
 
 /// A body without mass is read by joints of the same colour at the same time, so it is not written.
@@ -66,5 +83,10 @@ void write_back(const JointRow<D>& row, const Motion<D>& a, const Motion<D>& b,
   if (row.mass_a.inverse_mass > 0.0f) motions[row.body_a] = a;
   if (row.mass_b.inverse_mass > 0.0f) motions[row.body_b] = b;
 }
+
+/// Rows and effective masses at the poses of `a` and `b`: once wherever positions have moved.
+template <int D>
+void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a, const Motion<D>& b,
+                   JointRow<D>& row);
 
 }  // namespace cycloid::solver

@@ -69,6 +69,35 @@ void scatter(const MotionLanes<D, W>& lanes, const LaneMass<D, W>& mass,
   }
 }
 
+/// Writes the poses back, to bodies with mass.
+template <int D, int W>
+void scatter_pose(const MotionLanes<D, W>& lanes, const LaneMass<D, W>& mass,
+                  const LaneIndices<W>& bodies, std::span<Motion<D>> motions) {
+  float position[D][W];
+  float rotation[Dim<D>::kRotation][W];
+  float inverse_mass[W];
+  for (int i = 0; i < D; ++i) lanes.delta_position[i].store(position[i]);
+  for (int i = 0; i < Dim<D>::kRotation; ++i) lanes.delta_rotation[i].store(rotation[i]);
+  mass.inverse_mass.store(inverse_mass);
+  for (int lane = 0; lane < W; ++lane) {
+    if (inverse_mass[lane] == 0.0f) continue;
+    Motion<D>& motion = motions[bodies[static_cast<std::size_t>(lane)]];
+    for (int i = 0; i < D; ++i) motion.delta_position[i] = position[i][lane];
+    for (int i = 0; i < Dim<D>::kRotation; ++i) motion.delta_rotation[i] = rotation[i][lane];
+  }
+}
+
+/// q' = q + turn q (in space turn / 2) at unit length, in lanes that turn at all: for corrections,
+/// which are small. A lane that does not turn keeps its bits.
+template <class L, int N, int S>
+void turn_lanes(const Vec<S, L>& turn, Vec<N, L>& q) {
+  const Vec<N, L> raised = q + turn_derivative(turn, q);
+  L square = turn[0] * turn[0];
+  for (int i = 1; i < S; ++i) square += turn[i] * turn[i];
+  const L scale = L(1.0f) / sqrt(dot(raised, raised));
+  for (int i = 0; i < N; ++i) q[i] = select(square > L(0.0f), scale * raised[i], q[i]);
+}
+
 template <int D, int W>
 Spin<D, Lanes<W>> turned_by(const LaneMass<D, W>& mass, const Spin<D, Lanes<W>>& moment_of) {
   constexpr int kSpin = Dim<D>::kSpin;

@@ -14,6 +14,15 @@ struct BodyPair {
   bool b_moves;
 };
 
+/// Every constraint in one line, solved one after the other.
+static void list_in_order(int count, bool reverse, Coloring& coloring) {
+  coloring.colors.clear();
+  coloring.overflow = {0, count};
+  coloring.order.resize(static_cast<std::size_t>(count));
+  for (int i = 0; i < count; ++i)
+    coloring.order[static_cast<std::size_t>(i)] = reverse ? count - 1 - i : i;
+}
+
 /// Gives each constraint, in order, the lowest colour that neither of its moving bodies has yet.
 template <class PairOf>
 static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_t>& used,
@@ -50,7 +59,8 @@ static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_
     coloring.order[static_cast<std::size_t>(next[color_of[static_cast<std::size_t>(i)]]++)] = i;
 }
 
-/// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes.
+/// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes;
+/// or, where the tuning asks for an order, one line of each.
 ///
 /// Reads joints, contacts, shapes and the kinds of bodies; writes both colourings. Serial, because
 /// each choice depends on those before; a function of ids alone, so not of workers or history.
@@ -61,6 +71,14 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   joints.clear();
   for (int i = 0; i < static_cast<int>(state.joints.size()); ++i)
     if (state.joints[static_cast<std::size_t>(i)].kind != JointKind::kFree) joints.push_back(i);
+  const Order order = state.header.tuning.order;
+  if (order != Order::kColor) {
+    const bool reverse = order == Order::kReverse;
+    list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
+    for (int& index : scratch.joint_coloring.order) index = joints[static_cast<std::size_t>(index)];
+    list_in_order(static_cast<int>(scratch.contacts.size()), reverse, scratch.contact_coloring);
+    return;
+  }
   scratch.used_colors.assign(state.bodies.size(), 0);
   color_in_order(
       static_cast<int>(joints.size()),

@@ -1,3 +1,4 @@
+#include "solver/constraints/joints/unwrap.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/validate.hpp"
 
@@ -40,10 +41,15 @@ void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
   }
   for (const JointRow<D>& row : scratch.joint_rows) {
     Joint<D>& joint = state.joints[row.joint];
-    joint.impulse = row.impulse;
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i)
+      joint.impulse[static_cast<std::size_t>(i)] = row.impulse[i];
+    joint.spring_impulse = row.spring_impulse;
     joint.motor_impulse = row.motor_impulse;
     joint.lower_impulse = row.lower_impulse;
     joint.upper_impulse = row.upper_impulse;
+    if (joint.kind != JointKind::kGear) continue;
+    joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
+                       unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};
   }
   state.contacts.swap(scratch.contacts);
   ++state.header.tick;

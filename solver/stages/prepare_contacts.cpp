@@ -1,3 +1,4 @@
+#include "solver/constraints/restitution.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -9,8 +10,16 @@ struct ContactNumbers {
   std::uint32_t body_b;
   float friction;
   float restitution;
+  float rolling;  ///< m
   Softness softness;
 };
+
+/// What a shape rolls on; 0 for what has corners.
+template <int D>
+static float rolling_radius(const Shape<D>& shape) {
+  const bool round = shape.kind == ShapeKind::kBall || shape.kind == ShapeKind::kCapsule;
+  return round ? shape.radius : 0.0f;
+}
 
 template <int D>
 static ContactNumbers<D> numbers_of(const StepContext<D>& context, const WorldState<D>& state,
@@ -21,8 +30,12 @@ static ContactNumbers<D> numbers_of(const StepContext<D>& context, const WorldSt
   const Material& material_b = state.materials[b.material];
   const bool both_move =
       state.bodies[a.body].inverse_mass > 0.0f && state.bodies[b.body].inverse_mass > 0.0f;
-  return {a.body, b.body, sqrt(material_a.friction * material_b.friction),
+  return {a.body,
+          b.body,
+          sqrt(material_a.friction * material_b.friction),
           max(material_a.restitution, material_b.restitution),
+          max(material_a.rolling_resistance, material_b.rolling_resistance) *
+              max(rolling_radius(a), rolling_radius(b)),
           both_move ? context.contact : context.contact_static};
 }
 
@@ -64,6 +77,9 @@ struct PointInput {
   const Motion<D>& motion_b;
   const BodyMass<D>& mass_a;
   const BodyMass<D>& mass_b;
+  float pull;  ///< m/s^2
+  float h;     ///< s
+  float warm_starting;
 };
 
 template <int D, int W>
@@ -75,17 +91,43 @@ static void set_point(typename ContactBlock<D, W>::Point& point, int lane, const
   set_lane(point.r_b, lane, r_b);
   set_lane(point.adjusted_separation, lane, in.geometry.separation - dot(r_b - r_a, normal));
   set_lane(point.normal_mass, lane, effective_mass(in.mass_a, in.mass_b, r_a, r_b, normal));
-  set_lane(point.normal_impulse, lane, in.impulses.normal_impulse);
+  set_lane(point.normal_impulse, lane, in.warm_starting * in.impulses.normal_impulse);
   const Vec<D> velocity = (in.motion_b.velocity + spin_cross(in.motion_b.spin, r_b)) -
                           (in.motion_a.velocity + spin_cross(in.motion_a.spin, r_a));
-  set_lane(point.relative_velocity, lane, dot(normal, velocity));
+  const float approach = dot(normal, velocity);
+  set_lane(point.approach_speed, lane, approach);
+  set_lane(point.impact_energy, lane,
+           impact_energy(approach, in.geometry.separation, in.pull, in.h));
   Vec<D> tangent[Dim<D>::kTangents];
   tangents(normal, tangent);
   for (int t = 0; t < Dim<D>::kTangents; ++t) {
     set_lane(point.tangent_mass[t], lane,
              effective_mass(in.mass_a, in.mass_b, r_a, r_b, tangent[t]));
-    set_lane(point.tangent_impulse[t], lane, in.impulses.tangent_impulse[t]);
+    set_lane(point.tangent_impulse[t], lane, in.warm_starting * in.impulses.tangent_impulse[t]);
   }
+}
+
+/// What gravity and forces do to a body without contacts, m/s^2.
+template <int D>
+static Vec<D> free_acceleration(const StepContext<D>& context, const Body<D>& body) {
+  if (body.inverse_mass == 0.0f) return Vec<D>::zero();
+  return body.gravity_scale * context.gravity + body.inverse_mass * body.force;
+}
+
+template <int D>
+static float rolling_mass(const BodyMass<D>& a, const BodyMass<D>& b) {
+  constexpr int kSpin = Dim<D>::kSpin;
+  float trace = 0.0f;
+  for (int i = 0; i < kSpin; ++i)
+    trace += a.inverse_inertia.m[i * kSpin + i] + b.inverse_inertia.m[i * kSpin + i];
+  return trace > 0.0f ? static_cast<float>(kSpin) / trace : 0.0f;
+}
+
+template <int D>
+static bool can_turn(const BodyMass<D>& mass) {
+  for (const float value : mass.inverse_inertia.m)
+    if (value != 0.0f) return true;
+  return false;
 }
 
 template <int D, int W>
@@ -111,6 +153,17 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   set_lane(block.share_b, lane, mass_b.inverse_mass / (mass_a.inverse_mass + mass_b.inverse_mass));
   set_lane(block.friction, lane, numbers.friction);
   set_lane(block.restitution, lane, numbers.restitution);
+  set_lane(block.rolling, lane, numbers.rolling);
+  set_lane(block.rolling_mass, lane, rolling_mass(mass_a, mass_b));
+  set_lane(block.rolling_impulse, lane, context.tuning.warm_starting * contact.rolling_impulse);
+  const Vec<D> pulls = free_acceleration(context, state.bodies[numbers.body_a]) -
+                       free_acceleration(context, state.bodies[numbers.body_b]);
+  const float pull = max(dot(manifold.normal, pulls), 0.0f);
+  set_lane(block.pull, lane, pull);
+  block.turns = block.turns || can_turn(mass_a) || can_turn(mass_b);
+  block.rubs = block.rubs || numbers.friction > 0.0f;
+  block.rolls = block.rolls || numbers.rolling > 0.0f;
+  block.bounces = block.bounces || numbers.restitution > 0.0f;
   set_lane(block.bias_rate, lane, numbers.softness.bias_rate);
   set_lane(block.mass_scale, lane, numbers.softness.mass_scale);
   set_lane(block.impulse_scale, lane, numbers.softness.impulse_scale);
@@ -121,7 +174,10 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
                            scratch.motions[numbers.body_a],
                            scratch.motions[numbers.body_b],
                            mass_a,
-                           mass_b};
+                           mass_b,
+                           pull,
+                           context.h,
+                           context.tuning.warm_starting};
     set_point<D, W>(block.points[p], lane, manifold.normal, in);
   }
 }

@@ -1,44 +1,76 @@
+#include "solver/constraints/joint_row.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
 
-static Rotation<2> conjugate(const Rotation<2>& q) {
-  return {{q[0], -q[1]}};
+/// No bound on an impulse: more than any bounded world can ask for.
+static constexpr float kUnbounded = 1.0e30f;
+
+/// Which blocks of equalities are springs, and how much each may push.
+template <int D>
+static void set_blocks(const StepContext<D>& context, const Joint<D>& joint, JointRow<D>& row) {
+  const bool yields = joint.kind == JointKind::kMotor || joint.kind == JointKind::kTarget;
+  const bool weld = joint.kind == JointKind::kWeld;
+  row.is_spring[0] = yields || (weld && joint.hertz > 0.0f);
+  row.is_spring[1] = yields || (weld && joint.angular_hertz > 0.0f);
+  row.spring_of[0] = joint.hertz > 0.0f
+                         ? spring_softness(joint.hertz, joint.damping_ratio, context.h)
+                         : context.motor;
+  row.spring_of[1] =
+      joint.angular_hertz > 0.0f
+          ? spring_softness(joint.angular_hertz, joint.angular_damping_ratio, context.h)
+          : context.motor;
+  row.impulse_max[0] = yields ? context.h * joint.force_max : kUnbounded;
+  row.impulse_max[1] = joint.kind == JointKind::kMotor ? context.h * joint.torque_max : kUnbounded;
 }
-static Rotation<3> conjugate(const Rotation<3>& q) {
-  return {{-q[0], -q[1], -q[2], q[3]}};
+
+/// What acts along the coordinate.
+template <int D>
+static void set_axis(const StepContext<D>& context, const Joint<D>& joint, JointRow<D>& row) {
+  const bool of_position = joint.kind == JointKind::kWeld || joint.kind == JointKind::kMotor ||
+                           joint.kind == JointKind::kTarget;
+  row.motor_holds_position = joint.motor == MotorKind::kPosition;
+  row.motor_enabled = joint.motor != MotorKind::kOff;
+  row.spring_enabled = joint.hertz > 0.0f && !of_position && !row.motor_holds_position;
+  row.limit_enabled = joint.limit_enabled != 0;
+  row.spring = joint.hertz > 0.0f ? spring_softness(joint.hertz, joint.damping_ratio, context.h)
+                                  : context.motor;
+  row.spring_rest = joint.kind == JointKind::kDistance ? joint.length : joint.target;
+  row.target_rate = 0.0f;
+  row.lower = joint.lower;
+  row.upper = joint.upper;
+  row.motor_speed = joint.motor_speed;
+  row.motor_impulse_max = context.h * joint.motor_max;
+}
+
+/// Impulses of what is switched off are forgotten, or they would come back as a kick.
+template <int D>
+static void take_impulses(float share, const Joint<D>& joint, JointRow<D>& row) {
+  for (int i = 0; i < JointRow<D>::kRows; ++i)
+    row.impulse[i] = share * joint.impulse[static_cast<std::size_t>(i)];
+  row.spring_impulse = row.spring_enabled ? share * joint.spring_impulse : 0.0f;
+  row.motor_impulse = row.motor_enabled ? share * joint.motor_impulse : 0.0f;
+  row.lower_impulse = row.limit_enabled ? share * joint.lower_impulse : 0.0f;
+  row.upper_impulse = row.limit_enabled ? share * joint.upper_impulse : 0.0f;
 }
 
 template <int D>
 static JointRow<D> make_row(const StepContext<D>& context, const WorldState<D>& state,
                             const StepScratch<D>& scratch, std::uint32_t slot) {
   const Joint<D>& joint = state.joints[slot];
-  const Body<D>& a = state.bodies[joint.body_a];
-  const Body<D>& b = state.bodies[joint.body_b];
-  JointRow<D> row;
+  JointRow<D> row{};
   row.joint = slot;
-  row.kind = joint.kind;
   row.body_a = joint.body_a;
   row.body_b = joint.body_b;
+  row.rows_function = joint.kind == JointKind::kUser
+                          ? find_rows_function<D>(scratch.user_rows, joint.user_kind)
+                          : &rows_of<D>;
   row.mass_a = scratch.masses[joint.body_a];
   row.mass_b = scratch.masses[joint.body_b];
-  row.r_a = rotate(a.rotation, joint.anchor_a);
-  row.r_b = rotate(b.rotation, joint.anchor_b);
-  row.centre_offset = b.position - a.position;
-  row.angle = compose(conjugate(joint.reference), compose(conjugate(a.rotation), b.rotation));
-  row.length = joint.length;
-  row.is_spring = joint.hertz > 0.0f;
-  row.spring = spring_softness(joint.hertz, joint.damping_ratio, context.h);
-  row.limit_enabled = joint.limit_enabled != 0;
-  row.motor_enabled = joint.motor_enabled != 0;
-  row.lower_angle = joint.lower_angle;
-  row.upper_angle = joint.upper_angle;
-  row.motor_speed = joint.motor_speed;
-  row.motor_torque_max = joint.motor_torque_max;
-  row.impulse = joint.impulse;
-  row.motor_impulse = row.motor_enabled ? joint.motor_impulse : 0.0f;
-  row.lower_impulse = row.limit_enabled ? joint.lower_impulse : 0.0f;
-  row.upper_impulse = row.limit_enabled ? joint.upper_impulse : 0.0f;
+  row.centre_offset = state.bodies[joint.body_b].position - state.bodies[joint.body_a].position;
+  set_blocks(context, joint, row);
+  set_axis(context, joint, row);
+  take_impulses(context.tuning.warm_starting, joint, row);
   return row;
 }
 

@@ -1,29 +1,16 @@
-#include "solver/constraints/distance.hpp"
-#include "solver/constraints/revolute.hpp"
+#include "solver/constraints/contact_together.hpp"
+#include "solver/constraints/joint_solve.hpp"
+#include "solver/constraints/restitution.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
 
-template <int D>
-static void warm_start_joint(const JointRow<D>& row, std::span<Motion<D>> motions) {
+/// Runs `act(row, a, b)` on the two bodies of a joint and writes back those that move.
+template <int D, class Act>
+static void with_bodies(JointRow<D>& row, std::span<Motion<D>> motions, Act&& act) {
   Motion<D> a = motions[row.body_a];
   Motion<D> b = motions[row.body_b];
-  if (row.kind == JointKind::kDistance)
-    DistanceConstraint<D>::warm_start(row, a, b);
-  else
-    RevoluteConstraint<D>::warm_start(row, a, b);
-  write_back(row, a, b, motions);
-}
-
-template <int D>
-static void solve_joint(const StepContext<D>& context, Sweep sweep, JointRow<D>& row,
-                        std::span<Motion<D>> motions) {
-  Motion<D> a = motions[row.body_a];
-  Motion<D> b = motions[row.body_b];
-  if (row.kind == JointKind::kDistance)
-    DistanceConstraint<D>::solve(context, sweep, row, a, b);
-  else
-    RevoluteConstraint<D>::solve(context, sweep, row, a, b);
+  act(row, a, b);
   write_back(row, a, b, motions);
 }
 
@@ -36,7 +23,8 @@ void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
-    warm_start_joint(scratch.joint_rows[static_cast<std::size_t>(i)], motions);
+    with_bodies<D>(scratch.joint_rows[static_cast<std::size_t>(i)], motions,
+                   [](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { warm_start(row, a, b); });
   });
   for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
     warm_start(contacts.blocks[static_cast<std::size_t>(i)], motions);
@@ -54,7 +42,9 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
-    solve_joint(context, sweep, scratch.joint_rows[static_cast<std::size_t>(i)], motions);
+    with_bodies<D>(
+        scratch.joint_rows[static_cast<std::size_t>(i)], motions,
+        [&](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { solve(context, sweep, row, a, b); });
   });
   for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
     solve(context, sweep, contacts.blocks[static_cast<std::size_t>(i)], motions);
@@ -83,6 +73,8 @@ static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>
       for (int t = 0; t < Dim<D>::kTangents; ++t)
         contact.points[p].tangent_impulse[t] = block.points[p].tangent_impulse[t].raw[lane];
     }
+    for (int i = 0; i < Dim<D>::kSpin; ++i)
+      contact.rolling_impulse[i] = block.rolling_impulse[i].raw[lane];
   }
 }
 

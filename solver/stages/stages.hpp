@@ -28,6 +28,9 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
 template <int D>
 void integrate_velocities(const StepContext<D>& context, const WorldState<D>& state,
                           Workers& workers, StepScratch<D>& scratch);
+template <int D>
+void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
+                     StepScratch<D>& scratch);
 template <int D, int W>
 void warm_start_constraints(Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
@@ -36,6 +39,16 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
 template <int D>
 void integrate_positions(const StepContext<D>& context, const WorldState<D>& state,
                          Workers& workers, StepScratch<D>& scratch);
+
+template <int D, int W>
+void solve_pseudo_velocities(const StepContext<D>& context, Workers& workers,
+                             StepScratch<D>& scratch);
+template <int D, int W>
+void correct_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                       Workers& workers, StepScratch<D>& scratch);
+template <int D, int W>
+void project_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                       Workers& workers, StepScratch<D>& scratch);
 
 template <int D, int W>
 void apply_restitution(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
@@ -51,6 +64,7 @@ void finalize(StepScratch<D>& scratch, WorldState<D>& state);
 inline constexpr int kBodyGrain = 256;
 inline constexpr int kPairGrain = 64;
 inline constexpr int kBlockGrain = 16;
+inline constexpr int kJointGrain = 32;
 
 /// Runs `run(index)` for every constraint, colour after colour; inside a colour in parallel, the
 /// overflow one by one. The one place that knows why lanes and threads cannot change a bit: what

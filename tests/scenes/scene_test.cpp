@@ -22,7 +22,7 @@ Scene sample() {
         "points": [[-0.5, -0.5], [0.5, -0.5], [0.5, 0.5], [-0.5, 0.5]], "radius": 0.05}]}],
     "joints": [
       {"name": "hub", "body_a": "a", "body_b": "b", "anchor_a": [0.55], "anchor_b": [-0.55],
-       "motor_enabled": true, "motor_torque_max": 5},
+       "motor": "speed", "motor_max": 5},
       {"kind": "distance", "body_a": "floor", "body_b": "a", "length": 3, "hertz": 2}],
     "prefabs": [{"name": "pebble", "shapes": [{"radius": 0.1, "density": 2.5}]}],
     "seats": [{"name": "first", "controls": [

@@ -237,9 +237,9 @@ TEST(Motor, ReachesItsSpeedAtItsTorqueAndHoldsTheLimit) {
   JointDef<2> joint;
   joint.body_a = a;
   joint.body_b = b;
-  joint.motor_enabled = true;
+  joint.motor = MotorKind::kSpeed;
   joint.motor_speed = 2.0f;
-  joint.motor_torque_max = 1.0f;
+  joint.motor_max = 1.0f;
   const JointId id = world.create_joint(joint).value();
   step(world, 10);  // w = torque t / I = 1 rad/s after 1/6 s.
   EXPECT_NEAR(view(world, b).spin[0], 1.0f, 1.0e-3f);

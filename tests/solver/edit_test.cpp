@@ -133,13 +133,22 @@ TEST(CreateJoint, RefusesEachMistakeByItsField) {
   expect("length", Code::kInvalid, [](auto& d) { d.kind = JointKind::kDistance, d.length = 0.0f; });
   expect("hertz", Code::kInvalid, [](auto& d) { d.hertz = -1.0f; });
   expect("damping_ratio", Code::kInvalid, [](auto& d) { d.damping_ratio = kNan; });
-  expect("upper_angle", Code::kInvalid,
-         [](auto& d) { d.lower_angle = 1.0f, d.upper_angle = 0.5f; });
-  expect("lower_angle", Code::kInvalid, [](auto& d) { d.lower_angle = kNan; });
-  expect("motor_torque_max", Code::kInvalid, [](auto& d) { d.motor_torque_max = -1.0f; });
+  expect("upper", Code::kInvalid, [](auto& d) { d.lower = 1.0f, d.upper = 0.5f; });
+  expect("lower", Code::kInvalid, [](auto& d) { d.lower = kNan; });
+  expect("motor_max", Code::kInvalid, [](auto& d) { d.motor_max = -1.0f; });
   expect("motor_speed", Code::kInvalid, [](auto& d) { d.motor_speed = kNan; });
-  expect("motor_enabled", Code::kInvalid,
-         [](auto& d) { d.kind = JointKind::kDistance, d.motor_enabled = true; });
+  expect("motor", Code::kInvalid,
+         [](auto& d) { d.kind = JointKind::kWeld, d.motor = MotorKind::kSpeed; });
+  expect("axis", Code::kInvalid, [](auto& d) { d.kind = JointKind::kPrismatic; });
+  expect("axis", Code::kInvalid, [](auto& d) { d.axis = {{2.0f, 0.0f}}; });
+  expect("limit_enabled", Code::kInvalid,
+         [](auto& d) { d.kind = JointKind::kWeld, d.limit_enabled = true; });
+  expect("ratio", Code::kInvalid, [](auto& d) { d.kind = JointKind::kGear, d.ratio = 0.0f; });
+  expect("size", Code::kInvalid, [](auto& d) { d.kind = JointKind::kCurve; });
+  expect("curve", Code::kInvalid,
+         [](auto& d) { d.kind = JointKind::kCurve, d.curve = CurveKind::kPolyline; });
+  expect("user_kind", Code::kInvalid, [](auto& d) { d.kind = JointKind::kUser; });
+  expect("force_max", Code::kInvalid, [](auto& d) { d.force_max = -1.0f; });
 }
 
 TEST(CreateWorld, RefusesEachMistakeByItsField) {

@@ -22,11 +22,11 @@ World<2> busy_world() {
   pin.body_b = c;
   pin.anchor_a = {{1.9f, 0.55f}};
   pin.limit_enabled = true;
-  pin.lower_angle = -0.1f;
-  pin.upper_angle = 0.1f;
-  pin.motor_enabled = true;
+  pin.lower = -0.1f;
+  pin.upper = 0.1f;
+  pin.motor = MotorKind::kSpeed;
   pin.motor_speed = 1.0f;
-  pin.motor_torque_max = 2.0f;
+  pin.motor_max = 2.0f;
   EXPECT_TRUE(world.create_joint(pin).ok());
   JointDef<2> rope;
   rope.kind = JointKind::kDistance;

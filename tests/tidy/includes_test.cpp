@@ -21,9 +21,9 @@ static const std::map<std::string, std::vector<std::string>> kAllowed = {
       "sys/", "signal.h"}},
     {"client", {"solver/", "scenes/", "protocol/", "client/", "asio"}},
     {"cli",
-     {"solver/", "scenes/", "protocol/", "server/", "client/", "cli/", "asio", "spdlog/", "CLI/",
-      "nlohmann/", "fcntl.h", "unistd.h", "sys/", "signal.h", "poll.h", "spawn.h"}},
-    {"bench", {"solver/", "scenes/", "protocol/", "benchmark/"}},
+     {"solver/", "scenes/", "protocol/", "server/", "client/", "bench/", "cli/", "asio", "spdlog/",
+      "CLI/", "nlohmann/", "fcntl.h", "unistd.h", "sys/", "signal.h", "poll.h", "spawn.h"}},
+    {"bench", {"solver/", "scenes/", "protocol/", "bench/", "Eigen/", "benchmark/"}},
 };
 
 /// All that the solver may take from the standard library. What is not here brings a clock, chance,

@@ -1,0 +1,134 @@
+#pragma once
+
+#include "solver/constraints/contact_together.hpp"
+
+namespace cycloid::solver {
+
+/// The arms of a point turned with their bodies: positions are corrected where they are now.
+template <int D, int W>
+Arms<D, Lanes<W>> turned_arms(const typename ContactBlock<D, W>::Point& point,
+                              const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
+  return {rotate(a.delta_rotation, point.r_a), rotate(b.delta_rotation, point.r_b)};
+}
+
+/// x += M^-1 J^T lambda on the poses of both bodies. Units of lambda: kg m.
+template <int D, int W>
+void move_pair(const Vec<D, Lanes<W>>& lambda, const Arms<D, Lanes<W>>& arms,
+               const ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  a.delta_position -= block.mass_a.inverse_mass * lambda;
+  b.delta_position += block.mass_b.inverse_mass * lambda;
+  if (!block.turns) return;
+  turn_lanes(-turned_by<D, W>(block.mass_a, moment(arms.r_a, lambda)), a.delta_rotation);
+  turn_lanes(turned_by<D, W>(block.mass_b, moment(arms.r_b, lambda)), b.delta_rotation);
+}
+
+/// C of the position sweeps: baumgarte (s + slop) within [-correction_max, 0].
+template <int D, int W>
+Lanes<W> position_error(const StepContext<D>& context, const Lanes<W>& separation) {
+  using L = Lanes<W>;
+  const L error = L(context.tuning.baumgarte) * (separation + L(context.tuning.slop));
+  return min(max(error, L(-context.tuning.correction_max)), L(0.0f));
+}
+
+/// One non-linear Gauss-Seidel sweep over a block: lambda = max(0, -K^-1 C) with separation, arms
+/// and K at the present poses. What does not overlap is not touched, to the bit. Source: Catto,
+/// "Understanding Constraints" (GDC 2014); for two points at once solve_pair.
+template <int D, int W>
+void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
+                     std::span<Motion<D>> motions) {
+  using L = Lanes<W>;
+  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
+  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
+  L usable(0.0f);
+  if (context.tuning.contact_block == ContactBlockRows::kNormals && block.point_count == 2) {
+    const Arms<D, L> first = turned_arms<D, W>(block.points[0], a, b);
+    const Arms<D, L> second = turned_arms<D, W>(block.points[1], a, b);
+    const PairProblem<W> problem = {
+        coupling(block, block.normal, first, block.normal, first),
+        coupling(block, block.normal, first, block.normal, second),
+        coupling(block, block.normal, second, block.normal, second),
+        position_error<D, W>(context, separation_of(block, block.points[0], a, b)),
+        position_error<D, W>(context, separation_of(block, block.points[1], a, b))};
+    L x1;
+    L x2;
+    solve_pair(problem, x1, x2, usable);
+    const auto take = usable > L(0.0f);
+    move_pair(select(take, x1, L(0.0f)) * block.normal, first, block, a, b);
+    move_pair(select(take, x2, L(0.0f)) * block.normal, second, block, a, b);
+  }
+  for (std::uint32_t i = 0; i < block.point_count; ++i) {
+    const auto& point = block.points[i];
+    const Arms<D, L> arms = turned_arms<D, W>(point, a, b);
+    const L k = coupling(block, block.normal, arms, block.normal, arms);
+    const L error = position_error<D, W>(context, separation_of(block, point, a, b));
+    const L has_mass = select(point.normal_mass > L(0.0f), L(1.0f) - usable, L(0.0f));
+    const L lambda = has_mass * (-error / select(k > L(0.0f), k, L(1.0f)));
+    move_pair(lambda * block.normal, arms, block, a, b);
+  }
+  scatter_pose(a, block.mass_a, block.body_a, motions);
+  scatter_pose(b, block.mass_b, block.body_b, motions);
+}
+
+/// XPBD's position pass: overlap is projected out, at most push_speed_max h of it, then the points'
+/// tangential displacement since the substep's start where the cone can hold it.
+/// Source: Mueller, Macklin, Chentanez, Jeschke and Kim, "Detailed Rigid Body Simulation with
+/// Extended Position Based Dynamics" (SCA 2020), sections 3.3 to 3.5.
+template <int D, int W>
+void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
+                     std::span<const Motion<D>> before, std::span<Motion<D>> motions) {
+  using L = Lanes<W>;
+  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
+  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
+  const MotionLanes<D, W> before_a = gather<D, W>(before, block.body_a);
+  const MotionLanes<D, W> before_b = gather<D, W>(before, block.body_b);
+  const L deepest(-context.tuning.push_speed_max * context.h);
+  for (std::uint32_t i = 0; i < block.point_count; ++i) {
+    auto& point = block.points[i];
+    const Arms<D, L> arms = turned_arms<D, W>(point, a, b);
+    const L error = max(separation_of(block, point, a, b), deepest);
+    const L k = coupling(block, block.normal, arms, block.normal, arms);
+    const L change = select(point.normal_mass > L(0.0f), -error / max(k, L(1.0e-30f)), L(0.0f));
+    const L total = max(point.position_impulse + change, L(0.0f));
+    move_pair((total - point.position_impulse) * block.normal, arms, block, a, b);
+    point.position_impulse = total;
+    if (!block.rubs) continue;
+    const Arms<D, L> start = turned_arms<D, W>(point, before_a, before_b);
+    const Arms<D, L> now = turned_arms<D, W>(point, a, b);
+    const Vec<D, L> slip = ((b.delta_position - before_b.delta_position) + (now.r_b - start.r_b)) -
+                           ((a.delta_position - before_a.delta_position) + (now.r_a - start.r_a));
+    Vec<D, L> lambda = Vec<D, L>::zero();
+    L square(0.0f);
+    for (int t = 0; t < Dim<D>::kTangents; ++t) {
+      const L part = -point.tangent_mass[t] * dot(slip, block.tangent[t]);
+      lambda += part * block.tangent[t];
+      square += part * part;
+    }
+    const L bound = block.friction * total;
+    const L sticks = select(square > bound * bound, L(0.0f), L(1.0f));
+    move_pair(sticks * lambda, now, block, a, b);
+  }
+  scatter_pose(a, block.mass_a, block.body_a, motions);
+  scatter_pose(b, block.mass_b, block.body_b, motions);
+}
+
+/// XPBD's velocity pass: dynamic friction of the points that pushed, |impulse| <= friction lambda /
+/// h.
+template <int D, int W>
+void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
+                           std::span<Motion<D>> motions) {
+  using L = Lanes<W>;
+  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
+  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
+  for (std::uint32_t i = 0; i < block.point_count; ++i) {
+    auto& point = block.points[i];
+    point.normal_impulse = point.position_impulse * L(context.inverse_h);
+    point.max_normal_impulse = max(point.max_normal_impulse, point.normal_impulse);
+    for (L& impulse : point.tangent_impulse) impulse = L(0.0f);
+    if (block.rubs) solve_friction(context, block, point, a, b);
+    point.position_impulse = L(0.0f);
+  }
+  scatter(a, block.mass_a, block.body_a, motions);
+  scatter(b, block.mass_b, block.body_b, motions);
+}
+
+}  // namespace cycloid::solver

@@ -1,0 +1,157 @@
+#pragma once
+
+#include "solver/constraints/joint_row.hpp"
+
+namespace cycloid::solver {
+
+/// The one kernel of all joints: whatever the kind, its rows are solved as written here.
+
+template <int D>
+void warm_start(const JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+  for (int i = 0; i < row.rows.count; ++i)
+    apply_row(row, row.rows.rows[static_cast<std::size_t>(i)], row.impulse[i], a, b);
+  if (!row.rows.has_axis) return;
+  apply_row(row, row.rows.axis, row.spring_impulse + row.lower_impulse - row.upper_impulse, a, b);
+  apply_row(row, row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis, row.motor_impulse,
+            a, b);
+}
+
+/// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale lambda over the equalities
+/// [begin, end), held to the block's bound.
+template <int D>
+void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow<D>& row,
+                 Motion<D>& a, Motion<D>& b) {
+  const int begin = index == 0 ? 0 : row.rows.split;
+  const int count = index == 0 ? row.rows.split : row.rows.count - begin;
+  if (count == 0) return;
+  // A spring acts in every sweep, a correction in the biased ones; pseudo-velocities know no
+  // spring.
+  if (sweep == Sweep::kPseudo && row.is_spring[index]) return;
+  const Softness softness = row.is_spring[index]      ? row.spring_of[index]
+                            : sweep == Sweep::kRelax  ? kRigid
+                            : sweep == Sweep::kPseudo ? context.pseudo
+                                                      : context.joint;
+  float change[JointRow<D>::kRows];
+  for (int i = 0; i < count; ++i) {
+    const Row<D>& equality = row.rows.rows[static_cast<std::size_t>(begin + i)];
+    change[i] = row_speed(equality, a, b) + softness.bias_rate * equality.error;
+  }
+  row.blocks[index].solve(change, count);
+  float size = 0.0f;
+  for (int i = 0; i < count; ++i) {
+    const float old = row.impulse[begin + i];
+    change[i] = old - context.tuning.over_relaxation *
+                          (softness.mass_scale * change[i] + softness.impulse_scale * old);
+    size += change[i] * change[i];
+  }
+  size = sqrt(size);
+  const float bound = row.impulse_max[index];
+  const float scale = size > bound ? bound / size : 1.0f;
+  for (int i = 0; i < count; ++i) {
+    const float accumulated = scale * change[i];
+    apply_row(row, row.rows.rows[static_cast<std::size_t>(begin + i)],
+              accumulated - row.impulse[begin + i], a, b);
+    row.impulse[begin + i] = accumulated;
+  }
+}
+
+/// Spring, motor and position motor: |lambda| <= bound.
+template <int D>
+void solve_drives(JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+  if (row.spring_enabled) {
+    const float error = row.rows.axis.error - row.spring_rest;
+    const float change = -row.axis_mass * row.spring.mass_scale *
+                             (row_speed(row.rows.axis, a, b) + row.spring.bias_rate * error) -
+                         row.spring.impulse_scale * row.spring_impulse;
+    row.spring_impulse += change;
+    apply_row(row, row.rows.axis, change, a, b);
+  }
+  if (!row.motor_enabled) return;
+  const Row<D>& axis = row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis;
+  const float bound = row.motor_impulse_max;
+  const Softness softness = row.motor_holds_position ? row.spring : kRigid;
+  const float bias = row.motor_holds_position
+                         ? softness.bias_rate * (axis.error - row.spring_rest) - row.target_rate
+                         : -row.motor_speed;
+  const float wanted = row.motor_impulse -
+                       row.motor_mass * softness.mass_scale * (row_speed(axis, a, b) + bias) -
+                       softness.impulse_scale * row.motor_impulse;
+  const float accumulated = clamp(wanted, -bound, bound);
+  apply_row(row, axis, accumulated - row.motor_impulse, a, b);
+  row.motor_impulse = accumulated;
+}
+
+/// One limit: `room` is what is left until it [m or rad], the impulse pushes away from it.
+template <int D>
+void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, float room,
+                 float sign, float& impulse, Motion<D>& a, Motion<D>& b) {
+  Softness softness = kRigid;
+  float bias = 0.0f;
+  if (room > 0.0f) {
+    bias = room * context.inverse_h;
+  } else if (sweep != Sweep::kRelax) {
+    softness = sweep == Sweep::kPseudo ? context.pseudo : context.joint;
+    bias = softness.bias_rate * room;
+  }
+  const float speed = sign * row_speed(row.rows.axis, a, b);
+  const float change =
+      -row.axis_mass * softness.mass_scale * (speed + bias) - softness.impulse_scale * impulse;
+  const float accumulated = max(impulse + change, 0.0f);
+  apply_row(row, row.rows.axis, sign * (accumulated - impulse), a, b);
+  impulse = accumulated;
+}
+
+/// One sweep over a joint. The limit comes after the motor, so it wins; the equalities come last,
+/// so they are what is exact when the sweep ends.
+template <int D>
+void solve(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, Motion<D>& a,
+           Motion<D>& b) {
+  if (row.rows.has_axis) {
+    if (sweep != Sweep::kPseudo) solve_drives(row, a, b);
+    if (row.limit_enabled) {
+      const float coordinate = row.rows.axis.error;
+      solve_limit(context, sweep, row, coordinate - row.lower, 1.0f, row.lower_impulse, a, b);
+      solve_limit(context, sweep, row, row.upper - coordinate, -1.0f, row.upper_impulse, a, b);
+    }
+  }
+  if (row.solved_directly) return;
+  solve_block(context, sweep, 0, row, a, b);
+  solve_block(context, sweep, 1, row, a, b);
+}
+
+/// x += M^-1 J^T lambda on poses, rotations exactly.
+template <int D>
+void move_by_row(const JointRow<D>& joint, const Row<D>& row, float lambda, Motion<D>& a,
+                 Motion<D>& b) {
+  a.delta_position += (joint.mass_a.inverse_mass * lambda) * row.linear_a;
+  b.delta_position += (joint.mass_b.inverse_mass * lambda) * row.linear_b;
+  turn_by(joint.mass_a.inverse_inertia * (lambda * row.angular_a), a);
+  turn_by(joint.mass_b.inverse_inertia * (lambda * row.angular_b), b);
+}
+
+/// Non-linear Gauss-Seidel: lambda = -K^-1 C with C and J at the present poses, C held to the
+/// largest correction; what is satisfied is not touched. @pre rows were evaluated at these poses.
+/// Source: Catto, "Understanding Constraints" (GDC 2014).
+template <int D>
+void correct_joint(const StepContext<D>& context, JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+  const float most = context.tuning.correction_max;
+  if (row.rows.has_axis && row.limit_enabled) {
+    const float coordinate = row.rows.axis.error;
+    const float beyond = min(coordinate - row.lower, 0.0f) + max(coordinate - row.upper, 0.0f);
+    if (beyond != 0.0f)
+      move_by_row(row, row.rows.axis, -row.axis_mass * clamp(beyond, -most, most), a, b);
+  }
+  for (int index = 0; index < 2; ++index) {
+    const int begin = index == 0 ? 0 : row.rows.split;
+    const int count = index == 0 ? row.rows.split : row.rows.count - begin;
+    if (row.is_spring[index]) continue;
+    float change[JointRow<D>::kRows];
+    for (int i = 0; i < count; ++i)
+      change[i] = clamp(row.rows.rows[static_cast<std::size_t>(begin + i)].error, -most, most);
+    row.blocks[index].solve(change, count);
+    for (int i = 0; i < count; ++i)
+      move_by_row(row, row.rows.rows[static_cast<std::size_t>(begin + i)], -change[i], a, b);
+  }
+}
+
+}  // namespace cycloid::solver

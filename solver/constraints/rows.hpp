@@ -1,0 +1,145 @@
+#pragma once
+
+#include <array>
+
+#include "solver/dim.hpp"
+#include "solver/state.hpp"
+
+namespace cycloid::solver {
+
+/// One scalar constraint between two bodies.
+///
+///   Cdot = linear_a . v_a + angular_a . w_a + linear_b . v_b + angular_b . w_b + rate
+///
+/// The four vectors are the row's Jacobian J; v [m/s] of the centres of mass, w [rad/s], world
+/// axes. `error` is C in m or rad, `rate` its partial derivative in time, C being C(x, t).
+template <int D>
+struct Row {
+  Vec<D> linear_a = Vec<D>::zero();
+  Spin<D> angular_a = Spin<D>::zero();
+  Vec<D> linear_b = Vec<D>::zero();
+  Spin<D> angular_b = Spin<D>::zero();
+  float error = 0.0f;
+  float rate = 0.0f;
+};
+
+/// What a joint asks for at the present poses.
+///
+/// Rows [0, count) are equalities C = 0. Those before `split` are solved together as one block, and
+/// so are those from it on; a block may yield where its joint says so. `axis` is one more row,
+/// whose error is the joint's coordinate: springs, limits and, unless `motor_axis` is another,
+/// motors act along it.
+template <int D>
+struct JointRows {
+  int count = 0;
+  int split = 0;
+  std::array<Row<D>, Dim<D>::kFreedoms> rows;
+  bool has_axis = false;
+  bool has_motor_axis = false;
+  Row<D> axis;
+  Row<D> motor_axis;
+};
+
+/// The two bodies of a joint as its rows see them. World axes; m and rad.
+template <int D>
+struct JointFrame {
+  const WorldState<D>& state;  ///< For curves made of shapes: their records, not their poses.
+  const Joint<D>& joint;
+  Vec<D> position_a;  ///< Centres of mass.
+  Vec<D> position_b;
+  Rotation<D> rotation_a;
+  Rotation<D> rotation_b;
+  Vec<D> r_a;  ///< Anchors from the centres.
+  Vec<D> r_b;
+  Vec<D> offset;         ///< Anchor b from anchor a.
+  Rotation<D> relative;  ///< Rotation of b relative to a since creation, in a's frame.
+  float time_s;          ///< Since tick 0.
+};
+
+/// A function that writes rows: every kind of joint is one, and a user may register his own.
+/// It depends on the frame alone, or replays diverge; libm is not the same everywhere
+/// (solver/trig.hpp is). What it leaves alone stays as in JointRows{}.
+template <int D>
+using RowsFunction = void (*)(const JointFrame<D>& frame, JointRows<D>& rows);
+
+inline Rotation<2> conjugate(const Rotation<2>& q) {
+  return {{q[0], -q[1]}};
+}
+inline Rotation<3> conjugate(const Rotation<3>& q) {
+  return {{-q[0], -q[1], -q[2], q[3]}};
+}
+
+/// @param centre_offset  centre of b from centre of a: kept apart from the positions because far
+/// from the origin their difference has no digits left.
+template <int D>
+JointFrame<D> make_frame(const WorldState<D>& state, const Joint<D>& joint,
+                         const Vec<D>& position_a, const Vec<D>& centre_offset,
+                         const Rotation<D>& rotation_a, const Rotation<D>& rotation_b,
+                         float time_s) {
+  const Vec<D> r_a = rotate(rotation_a, joint.anchor_a);
+  const Vec<D> r_b = rotate(rotation_b, joint.anchor_b);
+  return {state,
+          joint,
+          position_a,
+          position_a + centre_offset,
+          rotation_a,
+          rotation_b,
+          r_a,
+          r_b,
+          centre_offset + (r_b - r_a),
+          compose(conjugate(joint.reference), compose(conjugate(rotation_a), rotation_b)),
+          time_s};
+}
+
+/// C = direction . (anchor_b - anchor_a) with a direction that turns with body a:
+///   J = (-u, -(r_a + d) x u, u, r_b x u),  d = anchor_b - anchor_a.
+template <int D>
+Row<D> translation_row(const JointFrame<D>& frame, const Vec<D>& direction) {
+  Row<D> row;
+  row.linear_a = -direction;
+  row.angular_a = -moment(frame.r_a + frame.offset, direction);
+  row.linear_b = direction;
+  row.angular_b = moment(frame.r_b, direction);
+  row.error = dot(direction, frame.offset);
+  return row;
+}
+
+/// C = anchor_b - anchor_a along the world axes: D rows.
+///   J_i = (-e_i, -r_a x e_i, e_i, r_b x e_i)
+template <int D>
+void append_point_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
+  for (int i = 0; i < D; ++i) {
+    Vec<D> e = Vec<D>::zero();
+    e[i] = 1.0f;
+    Row<D>& row = rows.rows[static_cast<std::size_t>(rows.count++)];
+    row.linear_a = -e;
+    row.angular_a = -moment(frame.r_a, e);
+    row.linear_b = e;
+    row.angular_b = moment(frame.r_b, e);
+    row.error = frame.offset[i];
+  }
+}
+
+/// The rotation of b relative to a since creation as a vector in the world frame, rad: exact in the
+/// plane; in space of length 2 sin(angle / 2), the shorter way round.
+Spin<2> rotation_error(const JointFrame<2>& frame);
+Spin<3> rotation_error(const JointFrame<3>& frame);
+
+/// C = rotation of b relative to a since creation, as a vector in the world frame:
+///   J_i = (0, -e_i, 0, e_i), exact in the plane and, in space, to first order in C.
+template <int D>
+void append_rotation_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
+  const Spin<D> error = rotation_error(frame);
+  for (int i = 0; i < Dim<D>::kSpin; ++i) {
+    Row<D>& row = rows.rows[static_cast<std::size_t>(rows.count++)];
+    row.angular_a[i] = -1.0f;
+    row.angular_b[i] = 1.0f;
+    row.error = error[i];
+  }
+}
+
+/// Rows of a joint of any built-in kind. kUser: nothing; the world calls the registered function.
+template <int D>
+void rows_of(const JointFrame<D>& frame, JointRows<D>& rows);
+
+}  // namespace cycloid::solver

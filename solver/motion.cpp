@@ -1,0 +1,22 @@
+#include "solver/motion.hpp"
+
+#include "solver/trig.hpp"
+
+namespace cycloid::solver {
+
+Rotation<2> rotation_by(const Spin<2>& turn) {
+  Rotation<2> q;
+  sin_cos(turn[0], q[1], q[0]);
+  return q;
+}
+Rotation<3> rotation_by(const Spin<3>& turn) {
+  const float angle = length(turn);
+  float sine = 0.0f;
+  float cosine = 0.0f;
+  sin_cos(0.5f * angle, sine, cosine);
+  // sin(a/2)/a -> 1/2 where the division has no digits left.
+  const float scale = angle > 1.0e-6f ? sine / angle : 0.5f;
+  return {{scale * turn[0], scale * turn[1], scale * turn[2], cosine}};
+}
+
+}  // namespace cycloid::solver

@@ -1,0 +1,42 @@
+#include "solver/constraints/contact_position.hpp"
+#include "solver/constraints/joint_solve.hpp"
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// One non-linear Gauss-Seidel sweep on positions: joints, then contacts, each row with its error
+/// and Jacobian where the bodies are now. Velocities are not touched, so no energy is put in.
+///
+/// Reads masses, arms and joints; writes deltas. Colour after colour (for_each_by_color).
+template <int D, int W>
+void correct_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                       Workers& workers, StepScratch<D>& scratch) {
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const std::span<Motion<D>> motions = scratch.motions;
+  for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
+    JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];
+    Motion<D> a = motions[row.body_a];
+    Motion<D> b = motions[row.body_b];
+    evaluate_rows(state, time_s, a, b, row);
+    correct_joint(context, row, a, b);
+    write_back(row, a, b, motions);
+  });
+  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
+    correct_contact(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
+  });
+}
+
+template <int D, int W>
+struct Instantiate {
+  static constexpr auto kCorrect = &correct_positions<D, W>;
+};
+template struct Instantiate<2, 1>;
+template struct Instantiate<2, 4>;
+template struct Instantiate<2, 8>;
+template struct Instantiate<2, 16>;
+template struct Instantiate<3, 1>;
+template struct Instantiate<3, 4>;
+template struct Instantiate<3, 8>;
+template struct Instantiate<3, 16>;
+
+}  // namespace cycloid::solver

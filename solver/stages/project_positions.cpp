@@ -1,0 +1,102 @@
+#include "solver/constraints/contact_position.hpp"
+#include "solver/constraints/joint_solve.hpp"
+#include "solver/stages/stages.hpp"
+#include "solver/trig.hpp"
+
+namespace cycloid::solver {
+
+/// The rotation vector of q, rad, the shorter way.
+static Spin<2> turn_of(const Rotation<2>& q) {
+  return {{atan2(q[1], q[0])}};
+}
+static Spin<3> turn_of(const Rotation<3>& q) {
+  const Vec<3> axis = {{q[0], q[1], q[2]}};
+  const float sine = length(axis);
+  const float sign = q[3] < 0.0f ? -1.0f : 1.0f;
+  // 2 atan2(s, c) / s -> 2 where the division has no digits left.
+  const float scale = sine > 1.0e-6f ? 2.0f * atan2(sine, sign * q[3]) / sine : 2.0f;
+  return (sign * scale) * axis;
+}
+
+/// v = (x - x_before) / h,  w = turn / h.
+template <int D>
+static void take_velocities(const StepContext<D>& context, const WorldState<D>& state,
+                            StepScratch<D>& scratch) {
+  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+    if (state.bodies[i].inverse_mass == 0.0f) continue;
+    Motion<D>& motion = scratch.motions[i];
+    const Motion<D>& before = scratch.saved_motions[i];
+    motion.velocity = context.inverse_h * (motion.delta_position - before.delta_position);
+    motion.spin = context.inverse_h *
+                  turn_of(compose(motion.delta_rotation, conjugate(before.delta_rotation)));
+  }
+}
+
+/// Springs and motors act on velocities before positions are predicted; equalities and limits are
+/// projected afterwards.
+template <int D>
+static void drive_joints(const StepContext<D>& context, StepScratch<D>& scratch) {
+  for (JointRow<D>& row : scratch.joint_rows) {
+    Motion<D> a = scratch.motions[row.body_a];
+    Motion<D> b = scratch.motions[row.body_b];
+    for (float& impulse : row.impulse) impulse = 0.0f;
+    row.spring_impulse = 0.0f;
+    row.motor_impulse = 0.0f;
+    if (row.rows.has_axis) solve_drives(row, a, b);
+    for (int index = 0; index < 2; ++index)
+      if (row.is_spring[index]) solve_block(context, Sweep::kBiased, index, row, a, b);
+    write_back(row, a, b, std::span<Motion<D>>(scratch.motions));
+  }
+}
+
+/// A substep of XPBD: predict, project joints and contacts, velocities from displacements, then
+/// dynamic friction. Rigid rows have no compliance, so no impulse is carried over.
+///
+/// Reads masses, arms and joints; writes motions and the points' impulses. Colour after colour.
+/// Source: Mueller et al., "Detailed Rigid Body Simulation with XPBD" (SCA 2020). We deviate:
+/// springs and motors stay velocity rows, and an overlap leaves at push_speed_max at most.
+template <int D, int W>
+void project_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                       Workers& workers, StepScratch<D>& scratch) {
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const std::span<Motion<D>> motions = scratch.motions;
+  integrate_velocities(context, state, workers, scratch);
+  evaluate_joints(state, time_s, workers, scratch);
+  drive_joints(context, scratch);
+  scratch.saved_motions = scratch.motions;
+  integrate_positions(context, state, workers, scratch);
+  const std::uint32_t sweeps = context.tuning.position_sweeps;
+  for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
+    for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
+      JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];
+      Motion<D> a = motions[row.body_a];
+      Motion<D> b = motions[row.body_b];
+      evaluate_rows(state, time_s, a, b, row);
+      correct_joint(context, row, a, b);
+      write_back(row, a, b, motions);
+    });
+    for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
+      project_contact(context, contacts.blocks[static_cast<std::size_t>(i)],
+                      std::span<const Motion<D>>(scratch.saved_motions), motions);
+    });
+  }
+  take_velocities(context, state, scratch);
+  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
+    rub_projected_contact(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
+  });
+}
+
+template <int D, int W>
+struct Instantiate {
+  static constexpr auto kProject = &project_positions<D, W>;
+};
+template struct Instantiate<2, 1>;
+template struct Instantiate<2, 4>;
+template struct Instantiate<2, 8>;
+template struct Instantiate<2, 16>;
+template struct Instantiate<3, 1>;
+template struct Instantiate<3, 4>;
+template struct Instantiate<3, 8>;
+template struct Instantiate<3, 16>;
+
+}  // namespace cycloid::solver

@@ -1,0 +1,105 @@
+#include "solver/validate.hpp"
+
+namespace cycloid::solver {
+
+static Error invalid(const char* field) {
+  return {Code::kInvalid, field};
+}
+
+static bool is_planar(JointKind kind) {
+  return kind == JointKind::kWheel || kind == JointKind::kGear || kind == JointKind::kCurve;
+}
+
+bool has_coordinate(JointKind kind, int spin) {
+  switch (kind) {
+    case JointKind::kDistance:
+    case JointKind::kPrismatic:
+    case JointKind::kUser:
+      return true;
+    case JointKind::kRevolute:
+    case JointKind::kWheel:
+      return spin == 1;
+    default:
+      return false;
+  }
+}
+
+bool has_limits(JointKind kind, int spin) {
+  const bool of_curve = kind == JointKind::kCurve && spin == 1;
+  return has_coordinate(kind, spin) || kind == JointKind::kPulley || of_curve;
+}
+
+float limit_max(JointKind kind) {
+  return kind == JointKind::kRevolute ? 3.2f : kSizeMax;
+}
+
+template <int D>
+static bool needs_axis(const JointDef<D>& def) {
+  return def.kind == JointKind::kPrismatic || def.kind == JointKind::kWheel;
+}
+
+template <int D>
+static Error validate_geometry(const JointDef<D>& def) {
+  if (!within(def.anchor_a, kSizeMax)) return invalid("anchor_a");
+  if (!within(def.anchor_b, kSizeMax)) return invalid("anchor_b");
+  const float axis = dot(def.axis, def.axis);
+  const bool unit = within(axis, 0.998f, 1.002f);
+  if (needs_axis(def) && !unit) return invalid("axis");
+  if (!unit && axis != 0.0f) return invalid("axis");
+  const bool distance = def.kind == JointKind::kDistance;
+  const bool rope = def.limit_enabled && def.hertz == 0.0f;
+  if (distance && !rope && !within(def.length, kSizeMin, kSizeMax)) return invalid("length");
+  if (!within(def.length, 0.0f, kSizeMax)) return invalid("length");
+  const float ratio = abs(def.ratio);
+  if (!within(ratio, 1.0e-3f, 1.0e3f)) return invalid("ratio");
+  if (!within(def.ground_a, kPositionMax)) return invalid("ground_a");
+  if (!within(def.ground_b, kPositionMax)) return invalid("ground_b");
+  if (def.kind != JointKind::kCurve) return {};
+  if (def.curve > CurveKind::kPolyline) return invalid("curve");
+  if (def.curve == CurveKind::kPolyline) return {};
+  const bool two = def.curve == CurveKind::kEllipse;
+  if (!within(def.size[0], kSizeMin, kSizeMax)) return invalid("size");
+  if (two && !within(def.size[1], kSizeMin, kSizeMax)) return invalid("size");
+  return {};
+}
+
+template <int D>
+static Error validate_drives(const JointDef<D>& def) {
+  if (!within(def.hertz, 0.0f, 1.0e5f)) return invalid("hertz");
+  if (!within(def.damping_ratio, 0.0f, 1.0e3f)) return invalid("damping_ratio");
+  if (!within(def.angular_hertz, 0.0f, 1.0e5f)) return invalid("angular_hertz");
+  if (!within(def.angular_damping_ratio, 0.0f, 1.0e3f)) return invalid("angular_damping_ratio");
+  if (def.limit_enabled && !has_limits(def.kind, Dim<D>::kSpin)) return invalid("limit_enabled");
+  const float bound = limit_max(def.kind);
+  if (!within(def.lower, -bound, bound)) return invalid("lower");
+  if (!within(def.upper, def.lower, bound)) return invalid("upper");
+  if (def.motor > MotorKind::kPosition) return invalid("motor");
+  if (def.motor != MotorKind::kOff && !has_coordinate(def.kind, Dim<D>::kSpin))
+    return invalid("motor");
+  // The motor of a wheel turns for ever; it has no position to hold.
+  if (def.motor == MotorKind::kPosition && def.kind == JointKind::kWheel) return invalid("motor");
+  if (!within(def.motor_speed, -kSpinMax, kSpinMax)) return invalid("motor_speed");
+  if (!within(def.motor_max, 0.0f, kForceMax)) return invalid("motor_max");
+  if (!within(def.target, -kSizeMax, kSizeMax)) return invalid("target");
+  if (!within(def.drive_amplitude, -kSizeMax, kSizeMax)) return invalid("drive_amplitude");
+  if (!within(def.drive_hertz, 0.0f, 1.0e4f)) return invalid("drive_hertz");
+  if (!within(def.force_max, 0.0f, kForceMax)) return invalid("force_max");
+  if (!within(def.torque_max, 0.0f, kForceMax)) return invalid("torque_max");
+  for (const float parameter : def.parameters)
+    if (!within(parameter, -1.0e30f, 1.0e30f)) return invalid("parameters");
+  return {};
+}
+
+template <int D>
+Error validate(const JointDef<D>& def) {
+  if (def.kind < JointKind::kDistance || def.kind > JointKind::kUser) return invalid("kind");
+  if (is_planar(def.kind) && Dim<D>::kSpin != 1) return invalid("kind");
+  if (def.body_a == def.body_b) return invalid("body_b");
+  if (const Error error = validate_geometry(def); !error.ok()) return error;
+  return validate_drives(def);
+}
+
+template Error validate(const JointDef<2>&);
+template Error validate(const JointDef<3>&);
+
+}  // namespace cycloid::solver
