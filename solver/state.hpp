@@ -55,9 +55,29 @@ struct Body {
   float linear_damping;
   float angular_damping;
   float gravity_scale;
+  float extent;              ///< Of the farthest point from the centre of mass, m.
+  float thickness;           ///< Radius of the largest ball in its thinnest shape, m.
   std::uint32_t rest_ticks;  ///< Ticks below tuning.sleep_speed.
   std::uint32_t asleep;      ///< 1: left alone until something wakes its island.
 };
+
+/// Whether a body takes part in a tick by itself: it moves, and does not sleep. What moves a
+/// sleeping body (a force, a velocity) wakes it.
+template <int D>
+bool is_active(const Body<D>& body) {
+  const bool pushed = dot(body.velocity, body.velocity) > 0.0f ||
+                      dot(body.spin, body.spin) > 0.0f || dot(body.force, body.force) > 0.0f ||
+                      dot(body.torque, body.torque) > 0.0f;
+  switch (body.kind) {
+    case BodyKind::kDynamic:
+    case BodyKind::kParticle:
+      return body.asleep == 0 || pushed;
+    case BodyKind::kKinematic:
+      return dot(body.velocity, body.velocity) > 0.0f || dot(body.spin, body.spin) > 0.0f;
+    default:
+      return false;
+  }
+}
 
 template <int D>
 struct Shape {

@@ -11,6 +11,8 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
                           Workers& workers, StepScratch<D>& scratch) {
   const Tuning& tuning = context.tuning;
   integrate_velocities(context, state, workers, scratch);
+  evaluate_contacts<D, W>(workers, scratch);
+  bounce_contacts<D, W>(context, workers, scratch);
   evaluate_joints(state, time_s, workers, scratch);
   warm_start_constraints<D, W>(workers, scratch);
   for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep)
@@ -21,7 +23,10 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
   if (tuning.stabilisation == Stabilisation::kNgs)
     for (std::uint32_t sweep = 0; sweep < tuning.position_sweeps; ++sweep)
       correct_positions<D, W>(context, state, time_s, workers, scratch);
-  if (tuning.relax_sweeps > 0) evaluate_joints(state, time_s, workers, scratch);
+  if (tuning.relax_sweeps > 0) {
+    evaluate_contacts<D, W>(workers, scratch);
+    evaluate_joints(state, time_s, workers, scratch);
+  }
   for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep)
     solve_constraints<D, W>(context, Sweep::kRelax, workers, scratch);
 }
@@ -30,6 +35,7 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
 template <int D, int W>
 static void solve_tick(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                        StepScratch<D>& scratch) {
+  wake_islands(context, state, scratch);
   color(state, scratch);
   prepare_bodies(state, workers, scratch);
   prepare_joints(context, state, scratch);
@@ -43,7 +49,6 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
     else
       solve_substep<D, W>(context, state, time_s, workers, scratch);
   }
-  apply_restitution<D, W>(context, workers, scratch);
   store_impulses<D, W>(workers, scratch);
 }
 
@@ -74,7 +79,8 @@ static bool turns(const WorldState<D>& state, std::uint32_t shape) {
 template <int D>
 static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch,
                        Statistics& statistics) {
-  for (const Contact<D>& contact : state.contacts) {
+  for (const int index : scratch.live_contacts) {
+    const Contact<D>& contact = state.contacts[static_cast<std::size_t>(index)];
     const Material& a = state.materials[state.shapes[contact.shape_a].material];
     const Material& b = state.materials[state.shapes[contact.shape_b].material];
     const bool rubs = a.friction * b.friction > 0.0f;
@@ -104,6 +110,7 @@ static Statistics statistics_of(const WorldState<D>& state, const StepScratch<D>
   statistics.contacts = static_cast<std::uint32_t>(state.contacts.size());
   statistics.colors = static_cast<std::uint32_t>(scratch.contact_coloring.colors.size());
   count_rows(state, scratch, statistics);
+  for (const Body<D>& body : state.bodies) statistics.asleep += body.asleep;
   return statistics;
 }
 
@@ -132,6 +139,7 @@ Error World<D>::step() {
   ended_.clear();
   append_contact_events(state_, scratch.contacts, events_);
   finalize(scratch, state_);
+  rest_islands(context, scratch, state_);
   statistics_ = statistics_of(state_, scratch);
   return {};
 }

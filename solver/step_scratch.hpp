@@ -69,6 +69,12 @@ struct StepScratch {
   std::vector<Contact<D>> contacts;    ///< Becomes the state's when the step commits.
   std::vector<Manifold<D>> manifolds;  ///< Of each contact.
 
+  std::vector<std::uint32_t> islands;    ///< Parent of each body; the root is its lowest slot.
+  std::vector<std::uint8_t> kept_awake;  ///< By body: something drives it.
+  std::vector<std::uint8_t> island_flags;
+  std::vector<std::uint8_t> awake;  ///< By body, and 0 for the resting one of unused lanes.
+  std::vector<int> live_contacts;   ///< Those with a manifold; the others are asleep.
+
   std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
   std::vector<BodyMass<D>> masses;
   std::vector<std::uint32_t> used_colors;  ///< Bit set by body slot.

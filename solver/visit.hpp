@@ -37,6 +37,8 @@ constexpr void visit_fields(R& r, F&& f, const Body<D>*) {
   f("linear_damping", r.linear_damping);
   f("angular_damping", r.angular_damping);
   f("gravity_scale", r.gravity_scale);
+  f("extent", r.extent);
+  f("thickness", r.thickness);
   f("rest_ticks", r.rest_ticks);
   f("asleep", r.asleep);
 }

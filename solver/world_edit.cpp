@@ -7,6 +7,7 @@
 #include "solver/shapes.hpp"
 #include "solver/step_scratch.hpp"
 #include "solver/validate.hpp"
+#include "solver/wake.hpp"
 #include "solver/workers.hpp"
 #include "solver/world.hpp"
 
@@ -75,6 +76,28 @@ static Body<D> body_from(const BodyDef<D>& def) {
   return body;
 }
 
+/// Farthest point and thinnest place of a body with its shapes in place.
+template <int D>
+static void set_size(const std::vector<Shape<D>>& shapes, Body<D>& body) {
+  body.extent = 0.0f;
+  body.thickness = 0.0f;
+  for (std::uint32_t s = body.first_shape; s != kNone; s = shapes[s].next) {
+    const Shape<D>& shape = shapes[s];
+    if (shape.vertex_count == 0) continue;
+    float inner = shape.kind == ShapeKind::kPolygon ? kSizeMax : 0.0f;
+    Vec<D> middle = Vec<D>::zero();
+    for (std::uint32_t v = 0; v < shape.vertex_count; ++v)
+      middle += (1.0f / static_cast<float>(shape.vertex_count)) * shape.vertices[v];
+    for (std::uint32_t v = 0; v < shape.vertex_count; ++v) {
+      body.extent = max(body.extent, length(shape.vertices[v]) + shape.radius);
+      if (shape.kind == ShapeKind::kPolygon)
+        inner = min(inner, dot(shape.normals[v], shape.vertices[v] - middle));
+    }
+    const float thickness = max(inner, 0.0f) + shape.radius;
+    body.thickness = body.thickness == 0.0f ? thickness : min(body.thickness, thickness);
+  }
+}
+
 template <int D>
 Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> defs) {
   if (const Error error = validate(def); !error.ok()) return error;
@@ -111,7 +134,10 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
     shape.next = body.first_shape;
     body.first_shape = slots[i];
   }
+  set_size(state_.shapes, body);
   state_.bodies[index] = body;
+  // A static body may be put where others sleep, and neither would look for the other.
+  if (body.inverse_mass == 0.0f) wake_all(state_);
   return BodyId{index, body.generation};
 }
 
@@ -128,9 +154,12 @@ Error World<D>::destroy_body(BodyId id) {
     return state_.shapes[contact.shape_a].body == id.index ||
            state_.shapes[contact.shape_b].body == id.index;
   };
-  for (const Contact<D>& contact : state_.contacts)
-    if (contact.touching != 0 && is_of_body(contact))
-      ended_.push_back(contact_event(state_, contact, false));
+  for (const Contact<D>& contact : state_.contacts) {
+    if (!is_of_body(contact)) continue;
+    wake(state_.bodies[state_.shapes[contact.shape_a].body]);
+    wake(state_.bodies[state_.shapes[contact.shape_b].body]);
+    if (contact.touching != 0) ended_.push_back(contact_event(state_, contact, false));
+  }
   std::erase_if(state_.contacts, is_of_body);
   for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone;) {
     const std::uint32_t next = state_.shapes[s].next;
@@ -234,12 +263,14 @@ Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
   joint.generation = state_.joints[index].generation;
   take_rest_values(state_, joint);
   state_.joints[index] = joint;
+  wake_both(state_, joint);
   return JointId{index, joint.generation};
 }
 
 template <int D>
 Error World<D>::destroy_joint(JointId id) {
   if (const Error error = check(id); !error.ok()) return error;
+  wake_both(state_, state_.joints[id.index]);
   state_.joints[id.index] = Joint<D>{};
   state_.joints[id.index].generation = id.generation + 1;
   state_.free_joints.push_back(id.index);

@@ -1,6 +1,7 @@
 #include "solver/step_scratch.hpp"
 #include "solver/trig.hpp"
 #include "solver/validate.hpp"
+#include "solver/wake.hpp"
 #include "solver/workers.hpp"
 #include "solver/world.hpp"
 
@@ -74,6 +75,8 @@ Error World<D>::set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& r
   Body<D>& body = state_.bodies[id.index];
   body.rotation = normalized_or(rotation, rotation);
   body.position = position + rotate(body.rotation, body.local_center);
+  // Nobody looks for the pairs of two bodies that rest, so what may touch it now has to look.
+  wake_all(state_);
   return {};
 }
 
@@ -81,6 +84,7 @@ template <int D>
 Error World<D>::set_gravity(const Vec<D>& gravity) {
   if (!within(gravity, 1.0e4f)) return invalid("gravity");
   state_.header.gravity = gravity;
+  wake_all(state_);
   return {};
 }
 
@@ -89,6 +93,7 @@ Error World<D>::set_gravity_scale(BodyId id, float scale) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(scale, -1.0e3f, 1.0e3f)) return invalid("scale");
   state_.bodies[id.index].gravity_scale = scale;
+  wake(state_.bodies[id.index]);
   return {};
 }
 
@@ -113,6 +118,7 @@ Error World<D>::set_mass(BodyId id, float mass_kg) {
   body.inverse_mass = 1.0f / mass_kg;
   for (float& moment : body.inertia.m) moment *= scale;
   for (float& moment : body.inverse_inertia.m) moment *= 1.0f / scale;
+  wake(body);
   return {};
 }
 
@@ -121,6 +127,7 @@ Error World<D>::set_material(std::uint32_t material, const Material& values) {
   if (material >= state_.materials.size()) return invalid("material");
   if (const Error error = validate(values, static_cast<int>(material)); !error.ok()) return error;
   state_.materials[material] = values;
+  wake_all(state_);
   return {};
 }
 
@@ -130,6 +137,7 @@ Error World<D>::set_filter(BodyId id, std::uint32_t shape, const Filter& filter)
   for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone; s = state_.shapes[s].next)
     if (state_.shapes[s].ordinal == shape) {
       state_.shapes[s].filter = filter;
+      wake_all(state_);
       return {};
     }
   return invalid("shape");
@@ -147,7 +155,11 @@ Error World<D>::set_motor(JointId id, bool enabled, float speed, float max) {
   if (enabled && !is_drivable(joint)) return invalid("enabled");
   if (!within(speed, -kSpinMax, kSpinMax)) return invalid("speed");
   if (!within(max, 0.0f, kForceMax)) return invalid("max");
-  joint.motor = enabled ? MotorKind::kSpeed : MotorKind::kOff;
+  const MotorKind motor = enabled ? MotorKind::kSpeed : MotorKind::kOff;
+  // Controls say this in every tick; only what changes wakes.
+  if (joint.motor == motor && joint.motor_speed == speed && joint.motor_max == max) return {};
+  wake_both(state_, joint);
+  joint.motor = motor;
   joint.motor_speed = speed;
   joint.motor_max = max;
   return {};
@@ -160,6 +172,9 @@ Error World<D>::set_target(JointId id, float target, float max) {
   if (!is_drivable(joint) || joint.kind == JointKind::kWheel) return invalid("joint");
   if (!within(target, -kSizeMax, kSizeMax)) return invalid("target");
   if (!within(max, 0.0f, kForceMax)) return invalid("max");
+  if (joint.motor == MotorKind::kPosition && joint.target == target && joint.motor_max == max)
+    return {};
+  wake_both(state_, joint);
   joint.motor = MotorKind::kPosition;
   joint.target = target;
   joint.motor_max = max;
@@ -171,6 +186,7 @@ Error World<D>::set_anchor(JointId id, const Vec<D>& anchor_a) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(anchor_a, kSizeMax)) return invalid("anchor_a");
   Joint<D>& joint = state_.joints[id.index];
+  wake_both(state_, joint);
   joint.anchor_a = anchor_a - state_.bodies[joint.body_a].local_center;
   return {};
 }
@@ -183,6 +199,7 @@ Error World<D>::set_limits(JointId id, bool enabled, float lower, float upper) {
   const float bound = limit_max(joint.kind);
   if (!within(lower, -bound, bound)) return invalid("lower");
   if (!within(upper, lower, bound)) return invalid("upper");
+  wake_both(state_, joint);
   joint.limit_enabled = enabled ? 1 : 0;
   joint.lower = lower;
   joint.upper = upper;
@@ -197,6 +214,7 @@ Error World<D>::set_spring(JointId id, float length, float hertz, float damping_
   if (!within(length, kSizeMin, kSizeMax)) return invalid("length");
   if (!within(hertz, 0.0f, 1.0e5f)) return invalid("hertz");
   if (!within(damping_ratio, 0.0f, 1.0e3f)) return invalid("damping_ratio");
+  wake_both(state_, joint);
   joint.length = length;
   joint.hertz = hertz;
   joint.damping_ratio = damping_ratio;
@@ -230,6 +248,7 @@ Error World<D>::set_tuning(const Tuning& tuning) {
   if (tuning.substeps != old.substeps)
     scale_impulses(static_cast<float>(old.substeps) / static_cast<float>(tuning.substeps), state_);
   old = tuning;
+  wake_all(state_);
   return {};
 }
 

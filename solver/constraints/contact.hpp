@@ -22,15 +22,13 @@ struct ContactBlock {
   struct Point {
     Vec<D, L> r_a;
     Vec<D, L> r_b;
-    L adjusted_separation;  ///< separation - n . (r_b - r_a): the part that no motion changes.
-    L normal_mass;
+    L separation;   ///< At the start of the tick, m.
+    L normal_mass;  ///< 0 in lanes that have no such point.
     L tangent_mass[kTangents];
-    L approach_speed;  ///< Along n at the start of the tick, negative when closing, m/s.
-    L impact_energy;   ///< Of the approach at the moment of touch, per kg: restitution.hpp.
     L normal_impulse;
-    L position_impulse;    ///< Of XPBD's position pass in this substep, kg m.
-    L saved_impulse;       ///< The normal impulse while pseudo-velocities are solved.
-    L max_normal_impulse;  ///< Over the tick's sweeps: whether the point pushed at all.
+    L position_impulse;  ///< Of XPBD's position pass in this substep, kg m.
+    L saved_impulse;     ///< The normal impulse while pseudo-velocities are solved.
+    L bounce_impulse;    ///< Of this substep's bounces, N s: friction may use it too.
     L tangent_impulse[kTangents];
   };
 
@@ -51,11 +49,18 @@ struct ContactBlock {
   L bias_rate;
   L mass_scale;
   L impulse_scale;
+  L turns_a;  ///< 1, or 0 where the point lies on a ball: it does not turn with the body.
+  L turns_b;
+  L is_round;               ///< 1 where both are balls about their centres of mass: follow_round.
+  Vec<D, L> centre_offset;  ///< Of b from a at the start of the tick, m.
+  L radius_a;
+  L radius_b;
   std::uint32_t point_count;  ///< The most points of any lane.
   bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
   bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
   bool rolls;                 ///< Some lane resists rolling.
   bool bounces;               ///< Some lane restitutes.
+  bool follows;               ///< Some lane is round.
   Point points[Dim<D>::kManifoldPoints];
 };
 
@@ -98,6 +103,36 @@ void apply_pair(const Vec<D, Lanes<W>>& impulse, const Arms<D, Lanes<W>>& arms,
   apply_impulse(impulse, arms.r_b, block.mass_b, b);
 }
 
+/// Two balls roll over one another: the normal, the point and the separation follow their centres.
+/// With the normal of the tick's start a glancing blow would act beside both centres and set them
+/// spinning. Other shapes keep their normal during a tick.
+template <int D, int W>
+void follow_round(ContactBlock<D, W>& block, std::span<const Motion<D>> motions) {
+  using L = Lanes<W>;
+  const MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
+  const MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
+  const Vec<D, L> slide = b.delta_position - a.delta_position;
+  const Vec<D, L> between = block.centre_offset + slide;
+  const L distance = sqrt(dot(between, between));
+  const L far = select(distance > L(1.0e-6f), block.is_round, L(0.0f));
+  const auto follows = far > L(0.0f);
+  const L inverse = L(1.0f) / select(follows, distance, L(1.0f));
+  for (int i = 0; i < D; ++i)
+    block.normal[i] = select(follows, inverse * between[i], block.normal[i]);
+  tangents(block.normal, block.tangent);
+  auto& point = block.points[0];
+  const L separation = distance - (block.radius_a + block.radius_b);
+  const L half = L(0.5f) * separation;
+  const Vec<D, L> r_a = (block.radius_a + half) * block.normal - block.share_b * slide;
+  const Vec<D, L> r_b = -((block.radius_b + half) * block.normal) - (block.share_b * slide - slide);
+  for (int i = 0; i < D; ++i) {
+    point.r_a[i] = select(follows, r_a[i], point.r_a[i]);
+    point.r_b[i] = select(follows, r_b[i], point.r_b[i]);
+  }
+  // separation_of adds what the bodies have moved along the normal since the tick began.
+  point.separation = select(follows, separation - dot(slide, block.normal), point.separation);
+}
+
 /// How one sweep treats the normal row of a point.
 template <int W>
 struct NormalRow {
@@ -112,19 +147,21 @@ template <int D, int W>
 Lanes<W> separation_of(const ContactBlock<D, W>& block,
                        const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
                        const MotionLanes<D, W>& b) {
-  const Vec<D, Lanes<W>> moved = (b.delta_position - a.delta_position) +
-                                 rotate(b.delta_rotation, point.r_b) -
-                                 rotate(a.delta_rotation, point.r_a);
-  return point.adjusted_separation + dot(moved, block.normal);
+  const Vec<D, Lanes<W>> turned_b = rotate(b.delta_rotation, point.r_b) - point.r_b;
+  const Vec<D, Lanes<W>> turned_a = rotate(a.delta_rotation, point.r_a) - point.r_a;
+  const Vec<D, Lanes<W>> moved =
+      (b.delta_position - a.delta_position) + (block.turns_b * turned_b - block.turns_a * turned_a);
+  return point.separation + dot(moved, block.normal);
 }
 
 /// A gap s > 0 may be closed but not crossed in this substep: bias = s / h. Overlap beyond the slop
 /// is pushed out by the block's softness, at most at `push_speed_max`. Pseudo-velocities answer to
-/// overlap alone: what is apart may not come closer by them.
+/// overlap alone: what is apart may not come closer by them. A relax sweep looks one substep ahead;
+/// what is about to bounce there keeps its `speed`, or it would arrive without it.
 template <int D, int W>
 NormalRow<W> normal_row(const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
                         const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
-                        const MotionLanes<D, W>& b) {
+                        const MotionLanes<D, W>& b, const Lanes<W>& speed) {
   using L = Lanes<W>;
   NormalRow<W> row;
   row.separation = separation_of(block, point, a, b);
@@ -133,7 +170,12 @@ NormalRow<W> normal_row(const StepContext<D>& context, Sweep sweep, const Contac
   row.bias = select(apart, row.separation * gap, L(0.0f));
   row.mass_scale = L(1.0f);
   row.impulse_scale = L(0.0f);
-  if (sweep == Sweep::kRelax) return row;
+  if (sweep == Sweep::kRelax) {
+    const L about_to = select(block.restitution > L(0.0f), L(1.0f), L(0.0f));
+    const L fast = select(speed < L(-context.tuning.restitution_threshold), about_to, L(0.0f));
+    row.bias = select(apart, select(fast > L(0.0f), -speed, row.bias), row.bias);
+    return row;
+  }
   const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : block.bias_rate;
   const L overlap = min(row.separation + L(context.tuning.slop), L(0.0f));
   row.bias = select(apart, row.bias, max(rate * overlap, L(-context.tuning.push_speed_max)));
@@ -195,7 +237,7 @@ void solve_friction(const StepContext<D>& context, ContactBlock<D, W>& block,
     wanted[t] = point.tangent_impulse[t] -
                 L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed;
   }
-  hold_to_cone<kTangents>(block.friction * point.normal_impulse, wanted);
+  hold_to_cone<kTangents>(block.friction * (point.normal_impulse + point.bounce_impulse), wanted);
   Vec<D, L> impulse = Vec<D, L>::zero();
   for (int t = 0; t < kTangents; ++t) {
     impulse += (wanted[t] - point.tangent_impulse[t]) * block.tangent[t];
@@ -212,7 +254,6 @@ void set_normal_impulse(const Lanes<W>& wanted, const Arms<D, Lanes<W>>& arms,
   const Lanes<W> accumulated = max(wanted, Lanes<W>(0.0f));
   const Lanes<W> applied = accumulated - point.normal_impulse;
   point.normal_impulse = accumulated;
-  point.max_normal_impulse = max(point.max_normal_impulse, accumulated);
   apply_pair(applied * block.normal, arms, block, a, b);
 }
 
@@ -222,9 +263,9 @@ void solve_normal(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>
                   typename ContactBlock<D, W>::Point& point, MotionLanes<D, W>& a,
                   MotionLanes<D, W>& b) {
   using L = Lanes<W>;
-  const NormalRow<W> row = normal_row(context, sweep, block, point, a, b);
   const Arms<D, L> arms = arms_of(block, point, a, b);
   const L speed = relative_speed(block.normal, arms, a, b);
+  const NormalRow<W> row = normal_row(context, sweep, block, point, a, b, speed);
   const L change = -point.normal_mass * row.mass_scale * (speed + row.bias) -
                    row.impulse_scale * point.normal_impulse;
   set_normal_impulse(point.normal_impulse + L(context.tuning.over_relaxation) * change, arms, block,

@@ -4,11 +4,15 @@
 
 namespace cycloid::solver {
 
-/// The arms of a point turned with their bodies: positions are corrected where they are now.
+/// The arms of a point turned with their bodies, but for points on balls: positions are corrected
+/// where they are now.
 template <int D, int W>
-Arms<D, Lanes<W>> turned_arms(const typename ContactBlock<D, W>::Point& point,
+Arms<D, Lanes<W>> turned_arms(const ContactBlock<D, W>& block,
+                              const typename ContactBlock<D, W>::Point& point,
                               const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
-  return {rotate(a.delta_rotation, point.r_a), rotate(b.delta_rotation, point.r_b)};
+  const Vec<D, Lanes<W>> turned_a = rotate(a.delta_rotation, point.r_a) - point.r_a;
+  const Vec<D, Lanes<W>> turned_b = rotate(b.delta_rotation, point.r_b) - point.r_b;
+  return {point.r_a + block.turns_a * turned_a, point.r_b + block.turns_b * turned_b};
 }
 
 /// x += M^-1 J^T lambda on the poses of both bodies. Units of lambda: kg m.
@@ -41,8 +45,8 @@ void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
   MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
   L usable(0.0f);
   if (context.tuning.contact_block == ContactBlockRows::kNormals && block.point_count == 2) {
-    const Arms<D, L> first = turned_arms<D, W>(block.points[0], a, b);
-    const Arms<D, L> second = turned_arms<D, W>(block.points[1], a, b);
+    const Arms<D, L> first = turned_arms<D, W>(block, block.points[0], a, b);
+    const Arms<D, L> second = turned_arms<D, W>(block, block.points[1], a, b);
     const PairProblem<W> problem = {
         coupling(block, block.normal, first, block.normal, first),
         coupling(block, block.normal, first, block.normal, second),
@@ -52,13 +56,14 @@ void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
     L x1;
     L x2;
     solve_pair(problem, x1, x2, usable);
+    usable = select(block.points[1].normal_mass > L(0.0f), usable, L(0.0f));
     const auto take = usable > L(0.0f);
     move_pair(select(take, x1, L(0.0f)) * block.normal, first, block, a, b);
     move_pair(select(take, x2, L(0.0f)) * block.normal, second, block, a, b);
   }
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     const auto& point = block.points[i];
-    const Arms<D, L> arms = turned_arms<D, W>(point, a, b);
+    const Arms<D, L> arms = turned_arms<D, W>(block, point, a, b);
     const L k = coupling(block, block.normal, arms, block.normal, arms);
     const L error = position_error<D, W>(context, separation_of(block, point, a, b));
     const L has_mass = select(point.normal_mass > L(0.0f), L(1.0f) - usable, L(0.0f));
@@ -84,7 +89,7 @@ void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
   const L deepest(-context.tuning.push_speed_max * context.h);
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
-    const Arms<D, L> arms = turned_arms<D, W>(point, a, b);
+    const Arms<D, L> arms = turned_arms<D, W>(block, point, a, b);
     const L error = max(separation_of(block, point, a, b), deepest);
     const L k = coupling(block, block.normal, arms, block.normal, arms);
     const L change = select(point.normal_mass > L(0.0f), -error / max(k, L(1.0e-30f)), L(0.0f));
@@ -92,10 +97,13 @@ void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
     move_pair((total - point.position_impulse) * block.normal, arms, block, a, b);
     point.position_impulse = total;
     if (!block.rubs) continue;
-    const Arms<D, L> start = turned_arms<D, W>(point, before_a, before_b);
-    const Arms<D, L> now = turned_arms<D, W>(point, a, b);
-    const Vec<D, L> slip = ((b.delta_position - before_b.delta_position) + (now.r_b - start.r_b)) -
-                           ((a.delta_position - before_a.delta_position) + (now.r_a - start.r_a));
+    // Friction holds the material points, which turn with balls too.
+    const Vec<D, L> slip =
+        ((b.delta_position + rotate(b.delta_rotation, point.r_b)) -
+         (before_b.delta_position + rotate(before_b.delta_rotation, point.r_b))) -
+        ((a.delta_position + rotate(a.delta_rotation, point.r_a)) -
+         (before_a.delta_position + rotate(before_a.delta_rotation, point.r_a)));
+    const Arms<D, L> now = turned_arms<D, W>(block, point, a, b);
     Vec<D, L> lambda = Vec<D, L>::zero();
     L square(0.0f);
     for (int t = 0; t < Dim<D>::kTangents; ++t) {
@@ -122,7 +130,6 @@ void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& bl
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
     point.normal_impulse = point.position_impulse * L(context.inverse_h);
-    point.max_normal_impulse = max(point.max_normal_impulse, point.normal_impulse);
     for (L& impulse : point.tangent_impulse) impulse = L(0.0f);
     if (block.rubs) solve_friction(context, block, point, a, b);
     point.position_impulse = L(0.0f);

@@ -74,9 +74,9 @@ void solve_normals_where(const Lanes<W>& wanted, const StepContext<D>& context, 
   using L = Lanes<W>;
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
-    const NormalRow<W> row = normal_row(context, sweep, block, point, a, b);
     const Arms<D, L> arms = arms_of(block, point, a, b);
     const L speed = relative_speed(block.normal, arms, a, b);
+    const NormalRow<W> row = normal_row(context, sweep, block, point, a, b, speed);
     const L change = -point.normal_mass * row.mass_scale * (speed + row.bias) -
                      row.impulse_scale * point.normal_impulse;
     set_normal_impulse(point.normal_impulse + wanted * change, arms, block, point, a, b);
@@ -99,11 +99,12 @@ void solve_normals_together(const StepContext<D>& context, Sweep sweep, ContactB
     L compliance[2];
     L diagonal[2];
     for (int i = 0; i < 2; ++i) {
-      const NormalRow<W> row = normal_row(context, sweep, block, *points[i], a, b);
       arms[i] = arms_of(block, *points[i], a, b);
+      const L speed = relative_speed(block.normal, arms[i], a, b);
+      const NormalRow<W> row = normal_row(context, sweep, block, *points[i], a, b, speed);
       diagonal[i] = coupling(block, block.normal, arms[i], block.normal, arms[i]);
       compliance[i] = diagonal[i] * (L(1.0f) / row.mass_scale - L(1.0f));
-      d[i] = relative_speed(block.normal, arms[i], a, b) + row.bias;
+      d[i] = speed + row.bias;
     }
     const L cross = coupling(block, block.normal, arms[0], block.normal, arms[1]);
     const L old[2] = {points[0]->normal_impulse, points[1]->normal_impulse};
@@ -114,7 +115,7 @@ void solve_normals_together(const StepContext<D>& context, Sweep sweep, ContactB
     L x1;
     L x2;
     solve_pair(problem, x1, x2, usable);
-    // A lane with one point has no mass at the second, which makes its problem singular.
+    usable = select(points[1]->normal_mass > L(0.0f), usable, L(0.0f));
     const auto take = usable > L(0.0f);
     set_normal_impulse(select(take, x1, old[0]), arms[0], block, *points[0], a, b);
     set_normal_impulse(select(take, x2, old[1]), arms[1], block, *points[1], a, b);
@@ -140,11 +141,10 @@ void solve_cone(const L& friction, const L (&k)[N][N], const L (&d)[N], L (&x)[N
   // A slide that would need no normal impulse to stop the approach does not exist: stick instead.
   const L slides = select(size > friction * stick[0], select(k_slide > zero, L(1.0f), zero), zero);
   const L slide_normal = max(-d[0] / select(k_slide > zero, k_slide, L(1.0f)), zero);
-  const L massless = select(k[0][0] > zero, L(1.0f), zero);
-  x[0] = massless * select(slides > zero, slide_normal, max(stick[0], zero));
+  x[0] = select(slides > zero, slide_normal, max(stick[0], zero));
   for (int i = 1; i < N; ++i) {
     const L slide = friction * slide_normal * inverse_size * stick[i];
-    x[i] = massless * select(slides > zero, slide, select(stick[0] > zero, stick[i], zero));
+    x[i] = select(slides > zero, slide, select(stick[0] > zero, stick[i], zero));
   }
 }
 
@@ -161,8 +161,9 @@ void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlo
   constexpr int kRows = 1 + kTangents;
   for (std::uint32_t p = 0; p < block.point_count; ++p) {
     auto& point = block.points[p];
-    const NormalRow<W> row = normal_row(context, sweep, block, point, a, b);
     const Arms<D, L> arms = arms_of(block, point, a, b);
+    const NormalRow<W> row =
+        normal_row(context, sweep, block, point, a, b, relative_speed(block.normal, arms, a, b));
     Vec<D, L> directions[kRows];
     L old[kRows];
     directions[0] = block.normal;
@@ -183,6 +184,7 @@ void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlo
     k[0][0] = k[0][0] / row.mass_scale;
     L x[kRows];
     solve_cone(block.friction, k, d, x);
+    for (int i = 0; i < kRows; ++i) x[i] = select(point.normal_mass > L(0.0f), x[i], old[i]);
     set_normal_impulse(x[0], arms, block, point, a, b);
     Vec<D, L> impulse = Vec<D, L>::zero();
     for (int t = 0; t < kTangents; ++t) {

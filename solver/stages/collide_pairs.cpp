@@ -43,6 +43,23 @@ static Contact<D> contact_of(const ShapePair& pair, const Manifold<D>& manifold,
   return contact;
 }
 
+/// Passes the old contacts before `key`. Those of bodies that both do nothing are kept as they are,
+/// without a manifold: nobody looked for their pairs, and nothing has moved.
+template <int D>
+static auto keep_sleeping(const WorldState<D>& state,
+                          typename std::vector<Contact<D>>::const_iterator old, std::uint64_t key,
+                          StepScratch<D>& scratch) {
+  for (; old != state.contacts.end(); ++old) {
+    if (ShapePair{old->shape_a, old->shape_b}.key() >= key) break;
+    const Body<D>& a = state.bodies[state.shapes[old->shape_a].body];
+    const Body<D>& b = state.bodies[state.shapes[old->shape_b].body];
+    if (is_active(a) || is_active(b)) continue;
+    scratch.contacts.push_back(*old);
+    scratch.manifolds.push_back({});
+  }
+  return old;
+}
+
 /// The contact points of every pair, with last tick's impulses where the same features met.
 ///
 /// Reads pairs, shapes, poses, velocities and the old contacts; writes pair_manifolds, contacts and
@@ -62,16 +79,16 @@ void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Wo
   scratch.manifolds.clear();
   auto old = state.contacts.begin();
   for (std::size_t i = 0; i < scratch.pairs.size(); ++i) {
-    if (scratch.pair_manifolds[i].point_count == 0) continue;
     const ShapePair& pair = scratch.pairs[i];
-    while (old != state.contacts.end() && ShapePair{old->shape_a, old->shape_b}.key() < pair.key())
-      ++old;
+    old = keep_sleeping(state, old, pair.key(), scratch);
+    if (scratch.pair_manifolds[i].point_count == 0) continue;
     const bool persists =
         old != state.contacts.end() && old->shape_a == pair.shape_a && old->shape_b == pair.shape_b;
     scratch.contacts.push_back(contact_of(pair, scratch.pair_manifolds[i], context.tuning.slop,
                                           persists ? &*old : nullptr));
     scratch.manifolds.push_back(scratch.pair_manifolds[i]);
   }
+  keep_sleeping(state, old, ~std::uint64_t{0}, scratch);
 }
 
 template void collide_pairs(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);

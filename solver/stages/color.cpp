@@ -14,6 +14,11 @@ struct BodyPair {
   bool b_moves;
 };
 
+/// Places in the list of live constraints become their slots.
+static void name_slots(const std::vector<int>& live, Coloring& coloring) {
+  for (int& index : coloring.order) index = live[static_cast<std::size_t>(index)];
+}
+
 /// Every constraint in one line, solved one after the other.
 static void list_in_order(int count, bool reverse, Coloring& coloring) {
   coloring.colors.clear();
@@ -69,14 +74,22 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   const auto moves = [&](std::uint32_t body) { return state.bodies[body].inverse_mass > 0.0f; };
   std::vector<int>& joints = scratch.live_joints;
   joints.clear();
-  for (int i = 0; i < static_cast<int>(state.joints.size()); ++i)
-    if (state.joints[static_cast<std::size_t>(i)].kind != JointKind::kFree) joints.push_back(i);
+  for (int i = 0; i < static_cast<int>(state.joints.size()); ++i) {
+    const Joint<D>& joint = state.joints[static_cast<std::size_t>(i)];
+    if (joint.kind == JointKind::kFree) continue;
+    if (scratch.awake[joint.body_a] != 0 || scratch.awake[joint.body_b] != 0) joints.push_back(i);
+  }
+  std::vector<int>& contacts = scratch.live_contacts;
+  contacts.clear();
+  for (int i = 0; i < static_cast<int>(scratch.manifolds.size()); ++i)
+    if (scratch.manifolds[static_cast<std::size_t>(i)].point_count > 0) contacts.push_back(i);
   const Order order = state.header.tuning.order;
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;
     list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
-    for (int& index : scratch.joint_coloring.order) index = joints[static_cast<std::size_t>(index)];
-    list_in_order(static_cast<int>(scratch.contacts.size()), reverse, scratch.contact_coloring);
+    name_slots(joints, scratch.joint_coloring);
+    list_in_order(static_cast<int>(contacts.size()), reverse, scratch.contact_coloring);
+    name_slots(contacts, scratch.contact_coloring);
     return;
   }
   scratch.used_colors.assign(state.bodies.size(), 0);
@@ -88,18 +101,20 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
         return BodyPair{joint.body_a, joint.body_b, moves(joint.body_a), moves(joint.body_b)};
       },
       scratch.used_colors, scratch.color_of, scratch.joint_coloring);
-  for (int& index : scratch.joint_coloring.order) index = joints[static_cast<std::size_t>(index)];
+  name_slots(joints, scratch.joint_coloring);
 
   scratch.used_colors.assign(state.bodies.size(), 0);
   color_in_order(
-      static_cast<int>(scratch.contacts.size()),
+      static_cast<int>(contacts.size()),
       [&](int i) {
-        const Contact<D>& contact = scratch.contacts[static_cast<std::size_t>(i)];
+        const auto slot = static_cast<std::size_t>(contacts[static_cast<std::size_t>(i)]);
+        const Contact<D>& contact = scratch.contacts[slot];
         const std::uint32_t a = state.shapes[contact.shape_a].body;
         const std::uint32_t b = state.shapes[contact.shape_b].body;
         return BodyPair{a, b, moves(a), moves(b)};
       },
       scratch.used_colors, scratch.color_of, scratch.contact_coloring);
+  name_slots(contacts, scratch.contact_coloring);
 }
 
 template void color(const WorldState<2>&, StepScratch<2>&);

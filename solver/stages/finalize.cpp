@@ -32,7 +32,7 @@ void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
     if (body.kind == BodyKind::kFree) continue;
     body.force = Vec<D>::zero();
     body.torque = Spin<D>::zero();
-    if (body.kind == BodyKind::kStatic) continue;
+    if (scratch.awake[i] == 0) continue;
     const Motion<D>& motion = scratch.motions[i];
     body.velocity = motion.velocity;
     body.spin = motion.spin;

@@ -4,10 +4,6 @@
 
 namespace cycloid::solver {
 
-static bool moves(BodyKind kind) {
-  return kind != BodyKind::kStatic;
-}
-
 /// Only a body that forces move answers to a contact.
 static bool responds(BodyKind kind) {
   return kind == BodyKind::kDynamic || kind == BodyKind::kParticle;
@@ -73,13 +69,14 @@ static ShapePair ordered(std::uint32_t a, std::uint32_t b) {
 }
 
 /// Pairs of the leaves in `range`: each with the half-spaces, and with the leaves it overlaps. Of
-/// two that both move, the lower rank reports the pair; a static leaf never looks.
+/// two that both move, the lower rank reports the pair; a leaf that is static or asleep never
+/// looks.
 template <int D>
 static void find_in_range(const WorldState<D>& state, const StepScratch<D>& scratch, Range range,
                           std::vector<ShapePair>& found) {
   found.clear();
   const auto moving = [&](std::uint32_t shape) {
-    return moves(state.bodies[state.shapes[shape].body].kind);
+    return is_active(state.bodies[state.shapes[shape].body]);
   };
   for (int rank = range.begin; rank < range.end; ++rank) {
     const auto& leaf = scratch.tree.leaf(rank);

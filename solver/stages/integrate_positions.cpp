@@ -13,7 +13,7 @@ void integrate_positions(const StepContext<D>& context, const WorldState<D>& sta
   workers.parallel_for(static_cast<int>(state.bodies.size()), kBodyGrain, [&](Range range) {
     for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
          ++i) {
-      if (state.bodies[i].kind <= BodyKind::kStatic) continue;
+      if (scratch.awake[i] == 0) continue;
       Motion<D>& motion = scratch.motions[i];
       motion.delta_position += context.h * motion.velocity;
       turn_by(context.h * motion.spin, motion);

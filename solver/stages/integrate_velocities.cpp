@@ -14,7 +14,7 @@ void integrate_velocities(const StepContext<D>& context, const WorldState<D>& st
     for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
          ++i) {
       const Body<D>& body = state.bodies[i];
-      if (body.inverse_mass == 0.0f) continue;
+      if (body.inverse_mass == 0.0f || scratch.awake[i] == 0) continue;
       Motion<D>& motion = scratch.motions[i];
       const Vec<D> acceleration =
           body.gravity_scale * context.gravity + body.inverse_mass * body.force;

@@ -1,4 +1,3 @@
-#include "solver/constraints/restitution.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -73,12 +72,8 @@ template <int D>
 struct PointInput {
   const ManifoldPoint<D>& geometry;
   const ContactPoint<D>& impulses;
-  const Motion<D>& motion_a;
-  const Motion<D>& motion_b;
   const BodyMass<D>& mass_a;
   const BodyMass<D>& mass_b;
-  float pull;  ///< m/s^2
-  float h;     ///< s
   float warm_starting;
 };
 
@@ -89,15 +84,9 @@ static void set_point(typename ContactBlock<D, W>::Point& point, int lane, const
   const Vec<D>& r_b = in.geometry.anchor_b;
   set_lane(point.r_a, lane, r_a);
   set_lane(point.r_b, lane, r_b);
-  set_lane(point.adjusted_separation, lane, in.geometry.separation - dot(r_b - r_a, normal));
+  set_lane(point.separation, lane, in.geometry.separation);
   set_lane(point.normal_mass, lane, effective_mass(in.mass_a, in.mass_b, r_a, r_b, normal));
   set_lane(point.normal_impulse, lane, in.warm_starting * in.impulses.normal_impulse);
-  const Vec<D> velocity = (in.motion_b.velocity + spin_cross(in.motion_b.spin, r_b)) -
-                          (in.motion_a.velocity + spin_cross(in.motion_a.spin, r_a));
-  const float approach = dot(normal, velocity);
-  set_lane(point.approach_speed, lane, approach);
-  set_lane(point.impact_energy, lane,
-           impact_energy(approach, in.geometry.separation, in.pull, in.h));
   Vec<D> tangent[Dim<D>::kTangents];
   tangents(normal, tangent);
   for (int t = 0; t < Dim<D>::kTangents; ++t) {
@@ -112,6 +101,27 @@ template <int D>
 static Vec<D> free_acceleration(const StepContext<D>& context, const Body<D>& body) {
   if (body.inverse_mass == 0.0f) return Vec<D>::zero();
   return body.gravity_scale * context.gravity + body.inverse_mass * body.force;
+}
+
+template <int D>
+static bool is_centred_ball(const Shape<D>& shape) {
+  return shape.kind == ShapeKind::kBall && length(shape.vertices[0]) <= 1.0e-6f * shape.radius;
+}
+
+template <int D, int W>
+static void set_round(const WorldState<D>& state, const Contact<D>& contact, int lane,
+                      ContactBlock<D, W>& block) {
+  const Shape<D>& a = state.shapes[contact.shape_a];
+  const Shape<D>& b = state.shapes[contact.shape_b];
+  const bool round = is_centred_ball(a) && is_centred_ball(b);
+  set_lane(block.turns_a, lane, is_centred_ball(a) ? 0.0f : 1.0f);
+  set_lane(block.turns_b, lane, is_centred_ball(b) ? 0.0f : 1.0f);
+  set_lane(block.is_round, lane, round ? 1.0f : 0.0f);
+  set_lane(block.radius_a, lane, a.radius);
+  set_lane(block.radius_b, lane, b.radius);
+  set_lane(block.centre_offset, lane,
+           state.bodies[b.body].position - state.bodies[a.body].position);
+  block.follows = block.follows || round;
 }
 
 template <int D>
@@ -158,8 +168,8 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   set_lane(block.rolling_impulse, lane, context.tuning.warm_starting * contact.rolling_impulse);
   const Vec<D> pulls = free_acceleration(context, state.bodies[numbers.body_a]) -
                        free_acceleration(context, state.bodies[numbers.body_b]);
-  const float pull = max(dot(manifold.normal, pulls), 0.0f);
-  set_lane(block.pull, lane, pull);
+  set_lane(block.pull, lane, max(dot(manifold.normal, pulls), 0.0f));
+  set_round(state, contact, lane, block);
   block.turns = block.turns || can_turn(mass_a) || can_turn(mass_b);
   block.rubs = block.rubs || numbers.friction > 0.0f;
   block.rolls = block.rolls || numbers.rolling > 0.0f;
@@ -169,14 +179,7 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   set_lane(block.impulse_scale, lane, numbers.softness.impulse_scale);
   if (contact.point_count > block.point_count) block.point_count = contact.point_count;
   for (std::uint32_t p = 0; p < contact.point_count; ++p) {
-    const PointInput<D> in{manifold.points[p],
-                           contact.points[p],
-                           scratch.motions[numbers.body_a],
-                           scratch.motions[numbers.body_b],
-                           mass_a,
-                           mass_b,
-                           pull,
-                           context.h,
+    const PointInput<D> in{manifold.points[p], contact.points[p], mass_a, mass_b,
                            context.tuning.warm_starting};
     set_point<D, W>(block.points[p], lane, manifold.normal, in);
   }

@@ -23,7 +23,7 @@ template <int D>
 static void take_velocities(const StepContext<D>& context, const WorldState<D>& state,
                             StepScratch<D>& scratch) {
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    if (state.bodies[i].inverse_mass == 0.0f) continue;
+    if (state.bodies[i].inverse_mass == 0.0f || scratch.awake[i] == 0) continue;
     Motion<D>& motion = scratch.motions[i];
     const Motion<D>& before = scratch.saved_motions[i];
     motion.velocity = context.inverse_h * (motion.delta_position - before.delta_position);
@@ -61,6 +61,8 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   integrate_velocities(context, state, workers, scratch);
+  evaluate_contacts<D, W>(workers, scratch);
+  bounce_contacts<D, W>(context, workers, scratch);
   evaluate_joints(state, time_s, workers, scratch);
   drive_joints(context, scratch);
   scratch.saved_motions = scratch.motions;

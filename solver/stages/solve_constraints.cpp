@@ -1,6 +1,5 @@
 #include "solver/constraints/contact_together.hpp"
 #include "solver/constraints/joint_solve.hpp"
-#include "solver/constraints/restitution.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -51,17 +50,6 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
   });
 }
 
-/// Reads the approach speeds of the tick's start; writes velocities and normal impulses, colour
-/// after colour.
-template <int D, int W>
-void apply_restitution(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-  const std::span<Motion<D>> motions = scratch.motions;
-  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-    restitute(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
-  });
-}
-
 template <int D, int W>
 static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>& contacts) {
   for (int lane = 0; lane < W; ++lane) {
@@ -93,7 +81,6 @@ template <int D, int W>
 struct Instantiate {
   static constexpr auto kWarmStart = &warm_start_constraints<D, W>;
   static constexpr auto kSolve = &solve_constraints<D, W>;
-  static constexpr auto kRestitution = &apply_restitution<D, W>;
   static constexpr auto kStore = &store_impulses<D, W>;
 };
 template struct Instantiate<2, 1>;

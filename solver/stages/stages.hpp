@@ -15,6 +15,9 @@ template <int D>
 void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch);
 template <int D>
+void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
+                  StepScratch<D>& scratch);
+template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch);
 template <int D>
 void prepare_bodies(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch);
@@ -28,6 +31,10 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
 template <int D>
 void integrate_velocities(const StepContext<D>& context, const WorldState<D>& state,
                           Workers& workers, StepScratch<D>& scratch);
+template <int D, int W>
+void evaluate_contacts(Workers& workers, StepScratch<D>& scratch);
+template <int D, int W>
+void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
                      StepScratch<D>& scratch);
@@ -51,14 +58,15 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
                        Workers& workers, StepScratch<D>& scratch);
 
 template <int D, int W>
-void apply_restitution(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
-template <int D, int W>
 void store_impulses(Workers& workers, StepScratch<D>& scratch);
 /// The first body that would leave the bounds, or a fault with field kFaultNone.
 template <int D>
 Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch);
 template <int D>
 void finalize(StepScratch<D>& scratch, WorldState<D>& state);
+template <int D>
+void rest_islands(const StepContext<D>& context, const StepScratch<D>& scratch,
+                  WorldState<D>& state);
 
 /// Ranges of this many bodies, pairs or blocks go to one thread at a time.
 inline constexpr int kBodyGrain = 256;

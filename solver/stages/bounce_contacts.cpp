@@ -1,0 +1,42 @@
+#include "solver/constraints/restitution.hpp"
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// A blow crosses this many contacts against the order of a sweep, and any number along it.
+static constexpr int kBounceSweeps = 4;
+
+/// Collisions of this substep, two bodies at a time, before anything is held: e = 1 keeps energy.
+///
+/// Reads masses, arms, deltas and velocities with this substep's gravity in them; writes velocities
+/// and bounce impulses. Colour after colour (for_each_by_color). Nothing where no material bounces.
+template <int D, int W>
+void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  bool bounces = false;
+  for (ContactBlock<D, W>& block : contacts.blocks) {
+    bounces = bounces || block.bounces;
+    for (auto& point : block.points) point.bounce_impulse = Lanes<W>(0.0f);
+  }
+  if (!bounces) return;
+  const std::span<Motion<D>> motions = scratch.motions;
+  for (int sweep = 0; sweep < kBounceSweeps; ++sweep)
+    for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
+      bounce(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
+    });
+}
+
+template <int D, int W>
+struct Instantiate {
+  static constexpr auto kBounce = &bounce_contacts<D, W>;
+};
+template struct Instantiate<2, 1>;
+template struct Instantiate<2, 4>;
+template struct Instantiate<2, 8>;
+template struct Instantiate<2, 16>;
+template struct Instantiate<3, 1>;
+template struct Instantiate<3, 4>;
+template struct Instantiate<3, 8>;
+template struct Instantiate<3, 16>;
+
+}  // namespace cycloid::solver

@@ -1,0 +1,168 @@
+#include <gtest/gtest.h>
+
+#include "tests/solver/world_fixture.hpp"
+
+namespace cycloid::solver {
+
+static bool sleeps(const World<2>& world, BodyId id) {
+  return world.state().bodies[id.index].asleep != 0;
+}
+
+static std::vector<BodyId> add_stack(World<2>& world, int count, float x = 0.0f) {
+  std::vector<BodyId> boxes;
+  for (int i = 0; i < count; ++i)
+    boxes.push_back(add_at<2>(world, {{x, 0.5f + static_cast<float>(i)}}, box(0.5f, 0.5f)));
+  return boxes;
+}
+
+// Words of a body, so that nothing that changes while it sleeps can hide.
+static std::vector<std::byte> bytes_of(const Body<2>& body) {
+  std::vector<std::byte> bytes(sizeof body);
+  std::memcpy(bytes.data(), &body, sizeof body);
+  return bytes;
+}
+
+TEST(Sleep, AStackFallsAsleepAndThenNothingOfItChangesAndNothingIsSolved) {
+  World<2> world = make_world(with_gravity<2>());
+  add_ground<2>(world, up<2>());
+  const std::vector<BodyId> boxes = add_stack(world, 10);
+  step(world, 600);
+  EXPECT_EQ(world.statistics().asleep, 10u);
+  EXPECT_EQ(world.statistics().rows, 0u);
+  const WorldState<2> before = world.state();
+  step(world, 3000);
+  for (const BodyId id : boxes)
+    EXPECT_EQ(bytes_of(world.state().bodies[id.index]), bytes_of(before.bodies[id.index]));
+  ASSERT_EQ(world.state().contacts.size(), before.contacts.size());
+  EXPECT_TRUE(world.contact_events().empty());
+  // Ten contacts, each with its slop of 5 mm and the sag of a soft row under its load.
+  EXPECT_NEAR(view(world, boxes.back()).position[1], 9.5f, 0.1f);
+}
+
+TEST(Sleep, NeverWhereTheTuningSaysSo) {
+  WorldDef<2> def = with_gravity<2>();
+  def.tuning.sleep_s = 0.0f;
+  World<2> world = make_world(def);
+  add_ground<2>(world, up<2>());
+  add_stack(world, 3);
+  step(world, 600);
+  EXPECT_EQ(world.statistics().asleep, 0u);
+  EXPECT_GT(world.statistics().rows, 0u);
+}
+
+TEST(Sleep, ABallThatFallsOnTheTopWakesTheWholeIslandAndNoOther) {
+  World<2> world = make_world(with_gravity<2>());
+  add_ground<2>(world, up<2>());
+  const std::vector<BodyId> hit = add_stack(world, 3);
+  const std::vector<BodyId> spared = add_stack(world, 3, 5.0f);
+  step(world, 300);
+  ASSERT_EQ(world.statistics().asleep, 6u);
+  const BodyId ball_id = add_at<2>(world, {{0.2f, 5.0f}}, ball<2>(0.3f));
+  float fastest = 0.0f;
+  for (int tick = 0; tick < 60; ++tick) {
+    step(world, 1);
+    if (!sleeps(world, hit[0])) fastest = std::max(fastest, length(view(world, hit[2]).velocity));
+  }
+  EXPECT_GT(fastest, 0.01f);
+  EXPECT_FALSE(sleeps(world, hit[0]));
+  for (const BodyId id : spared) EXPECT_TRUE(sleeps(world, id));
+  // The blow takes momentum from the ball from the first tick on: it does not bounce off a rock.
+  EXPECT_GT(view(world, ball_id).position[1], 3.2f);
+}
+
+TEST(Sleep, EveryCallThatCouldMatterWakes) {
+  const auto expect_awake = [](const char* what, auto&& act) {
+    World<2> world = make_world(with_gravity<2>());
+    const BodyId floor = add_ground<2>(world, up<2>());
+    const std::vector<BodyId> boxes = add_stack(world, 2);
+    step(world, 300);
+    ASSERT_TRUE(sleeps(world, boxes[1])) << what;
+    act(world, boxes, floor);
+    step(world, 1);
+    EXPECT_FALSE(sleeps(world, boxes[1])) << what;
+  };
+  expect_awake("force", [](auto& world, auto& boxes, BodyId) {
+    EXPECT_TRUE(world.apply_force(boxes[0], {{1.0f, 0.0f}}).ok());
+  });
+  expect_awake("impulse", [](auto& world, auto& boxes, BodyId) {
+    EXPECT_TRUE(world.apply_impulse(boxes[0], {{0.1f, 0.0f}}).ok());
+  });
+  expect_awake("velocity", [](auto& world, auto& boxes, BodyId) {
+    EXPECT_TRUE(world.set_velocity(boxes[0], {{0.1f, 0.0f}}, {{0.0f}}).ok());
+  });
+  expect_awake("pose", [](auto& world, auto& boxes, BodyId) {
+    EXPECT_TRUE(world.set_pose(boxes[0], {{3.0f, 0.5f}}, turned(0.0f)).ok());
+  });
+  expect_awake("gravity", [](auto& world, auto&, BodyId) {
+    EXPECT_TRUE(world.set_gravity({{1.0f, -10.0f}}).ok());
+  });
+  expect_awake("material", [](auto& world, auto&, BodyId) {
+    EXPECT_TRUE(world.set_material(0, {0.0f, 0.0f, 0.0f}).ok());
+  });
+  expect_awake("floor", [](auto& world, auto&, BodyId floor) {
+    EXPECT_TRUE(world.destroy_body(floor).ok());
+  });
+  expect_awake("joint", [](auto& world, auto& boxes, BodyId floor) {
+    JointDef<2> def;
+    def.body_a = floor;
+    def.body_b = boxes[0];
+    def.anchor_a = {{0.0f, 0.5f}};
+    EXPECT_TRUE(world.create_joint(def).ok());
+  });
+}
+
+TEST(Sleep, ABoxWhoseSupportIsTakenFalls) {
+  World<2> world = make_world(with_gravity<2>());
+  add_ground<2>(world, up<2>());
+  const std::vector<BodyId> boxes = add_stack(world, 3);
+  step(world, 300);
+  ASSERT_TRUE(sleeps(world, boxes[2]));
+  ASSERT_TRUE(world.destroy_body(boxes[0]).ok());
+  step(world, 120);
+  EXPECT_NEAR(view(world, boxes[2]).position[1], 1.5f, 0.02f);
+}
+
+TEST(Sleep, WhatAMotorTurnsAndWhatAPlatformCarriesStayAwake) {
+  World<2> world = make_world(with_gravity<2>());
+  const BodyId floor = add_ground<2>(world, up<2>());
+  const BodyId wheel = add_at<2>(world, {{0.0f, 3.0f}}, ball<2>(0.5f));
+  JointDef<2> axle;
+  axle.body_a = floor;
+  axle.body_b = wheel;
+  axle.anchor_a = {{0.0f, 3.0f}};
+  axle.motor = MotorKind::kSpeed;
+  axle.motor_speed = 0.01f;
+  axle.motor_max = 100.0f;
+  ASSERT_TRUE(world.create_joint(axle).ok());
+  BodyDef<2> platform;
+  platform.kind = BodyKind::kKinematic;
+  platform.position = {{10.0f, 1.0f}};
+  platform.velocity = {{0.01f, 0.0f}};
+  add(world, platform, box(1.0f, 0.1f));
+  const BodyId rider = add_at<2>(world, {{10.0f, 1.6f}}, box(0.5f, 0.5f));
+  step(world, 600);
+  EXPECT_FALSE(sleeps(world, wheel));
+  EXPECT_NEAR(view(world, wheel).spin[0], 0.01f, 1.0e-4f);
+  EXPECT_FALSE(sleeps(world, rider));
+  EXPECT_NEAR(view(world, rider).velocity[0], 0.01f, 1.0e-3f);
+}
+
+TEST(Sleep, ARestoredSleeperWakesToTheSameBits) {
+  World<2> world = make_world(with_gravity<2>());
+  add_ground<2>(world, up<2>());
+  add_stack(world, 5);
+  step(world, 400);
+  ASSERT_EQ(world.statistics().asleep, 5u);
+  std::vector<std::byte> bytes;
+  world.encode(bytes);
+  World<2> other = make_world<2>();
+  ASSERT_TRUE(other.decode(bytes).ok());
+  for (World<2>* each : {&world, &other}) add_at<2>(*each, {{0.3f, 6.0f}}, ball<2>(0.4f));
+  for (int tick = 0; tick < 200; ++tick) {
+    step(world, 1);
+    step(other, 1);
+    ASSERT_EQ(world.digest(), other.digest()) << tick;
+  }
+}
+
+}  // namespace cycloid::solver
