@@ -112,8 +112,8 @@ static int slide(Passage<D>& passage, Vec<D>& at) {
   const MoverDef<D>& def = passage.def;
   for (int iteration = 1; iteration <= def.iterations_max; ++iteration) {
     collect_planes(passage, at);
-    // What is overlapped cannot be cast against, so the cast is of as much as is outside of it.
-    const float inside = passage.separation > 0.0f ? 0.0f : 0.25f * def.skin - passage.separation;
+    // What is touched cannot be cast against, so the cast is of a thinner mover, clear of it.
+    const float inside = max(0.0f, 0.25f * def.skin - passage.separation);
     const bool deep = inside >= def.radius;
     const Vec<D> solved = solve_planes<D>(deep ? at : passage.target, passage.planes).position;
     const Vec<D> translation = solved - at;
@@ -150,26 +150,49 @@ static bool supports(const Passage<D>& passage, const QueryHit<D>& hit) {
   return below && below->fraction > 0.0f && dot(below->normal, def.up) >= def.slope_cos_min;
 }
 
-/// Up, forward and down past what stopped the mover; false, and nothing has changed, where there
-/// is nothing to stand on within `step_height` above the feet.
+/// Straight down until the mover stands `skin` above what it meets within `reach`. The cast is of
+/// a narrower mover, or a wall that it slides along would count as what it met.
 template <int D>
-static bool climb(const Passage<D>& passage, Vec<D>& at) {
+static Vec<D> set_down(const Passage<D>& passage, const Vec<D>& at, float reach,
+                       std::optional<QueryHit<D>>& hit) {
   const MoverDef<D>& def = passage.def;
-  const Vec<D> left = horizontal(def, passage.target - at);
-  if (length(left) < 0.1f * def.skin) return false;
+  const Probe<D> narrow = probe_of(def, def.radius - def.skin);
+  Vec<D> touch = at;
+  return advance(passage, narrow, at, -(reach + def.skin) * def.up, 2.0f * def.skin, hit, touch);
+}
+
+/// Up, forward by `ahead` and down; false, and nothing has changed, where that is no higher or
+/// there is nothing to stand on within `step_height` above the feet.
+template <int D>
+static bool climb_by(const Passage<D>& passage, const Vec<D>& ahead, Vec<D>& at) {
+  const MoverDef<D>& def = passage.def;
   const Probe<D> probe = probe_of(def, def.radius);
   std::optional<QueryHit<D>> hit;
   Vec<D> touch = at;
   const Vec<D> raised = advance(passage, probe, at, def.step_height * def.up, def.skin, hit, touch);
-  const Vec<D> forward = advance(passage, probe, raised, left, def.skin, hit, touch);
-  if (dot(forward - raised, left) < 0.1f * dot(left, left)) return false;
-  const Vec<D> lowered = advance(passage, probe, forward, at - raised, def.skin, hit, touch);
+  const Vec<D> forward = advance(passage, probe, raised, ahead, def.skin, hit, touch);
+  if (dot(forward - raised, ahead) < 0.1f * dot(ahead, ahead)) return false;
+  const Vec<D> lowered = set_down(passage, forward, dot(raised - at, def.up), hit);
   if (!hit || !supports(passage, *hit)) return false;
   const float feet = min(dot(def.lower, def.up), dot(def.upper, def.up)) - def.radius - def.skin;
   const float top = dot(hit->point - passage.origin - at, def.up);
   if (top - feet > def.step_height + 1.0e-3f) return false;
+  if (dot(lowered - at, def.up) < 0.01f * def.skin) return false;
   at = lowered;
   return true;
+}
+
+/// Onto the step that stopped the mover: by as much as it still wanted to go, and where that does
+/// not reach beyond the gap of its skin, by a little more.
+template <int D>
+static bool climb(const Passage<D>& passage, Vec<D>& at) {
+  const MoverDef<D>& def = passage.def;
+  const Vec<D> left = horizontal(def, passage.target - at);
+  const float distance = length(left);
+  if (distance < 0.1f * def.skin) return false;
+  if (climb_by(passage, left, at)) return true;
+  const float least = 3.0f * def.skin;
+  return distance < least && climb_by(passage, (least / distance) * left, at);
 }
 
 /// What the mover stands on, if anything. A mover that walked is set down onto it.
@@ -187,9 +210,8 @@ static std::optional<QueryHit<D>> find_ground(const Passage<D>& passage, const M
     if (rise >= def.slope_cos_min && (!ground || rise > dot(ground->normal, def.up))) ground = hit;
   }
   if (ground) return ground;
-  const float reach = (state.grounded ? def.step_height : 0.5f * def.skin) + lift + def.skin;
-  Vec<D> touch = at;
-  const Vec<D> lowered = advance(passage, probe, at, -reach * def.up, def.skin, ground, touch);
+  const float reach = (state.grounded ? def.step_height : 0.5f * def.skin) + lift;
+  const Vec<D> lowered = set_down(passage, at, reach, ground);
   if (!ground || !supports(passage, *ground)) return std::nullopt;
   if (state.grounded) at -= max(0.0f, dot(at - lowered, def.up) - lift) * def.up;
   return ground;
@@ -230,10 +252,13 @@ MoverStep<D> move(const WorldState<D>& world, const MoverDef<D>& def, const Move
   std::optional<QueryHit<D>> ground;
   if (!jumps) ground = find_ground(passage, state, at);
 
-  // A walker's speed is horizontal, whatever the slope it walks on.
-  for (CollisionPlane<D>& plane : passage.planes)
-    if (step.stepped || (walks && dot(plane.normal, def.up) >= def.slope_cos_min))
-      plane.push = 0.0f;
+  // A walker's speed is horizontal, whatever the slope it walks on: the ground alone, or a step
+  // that was climbed, takes none of it.
+  bool blocked = false;
+  for (const CollisionPlane<D>& plane : passage.planes)
+    blocked = blocked || (plane.push > 0.0f && dot(plane.normal, def.up) < def.slope_cos_min);
+  if (walks && (step.stepped || !blocked))
+    for (CollisionPlane<D>& plane : passage.planes) plane.push = 0.0f;
   const Vec<D> clipped = clip_velocity<D>(velocity, passage.planes);
   step.state.position = state.position + at;
   step.state.velocity = clipped;
