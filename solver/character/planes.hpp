@@ -57,9 +57,8 @@ Vec<D> sweep_planes(const Vec<D>& target, std::span<const CollisionPlane<D>> pla
 template <int D>
 PlaneResult<D> solve_planes(const Vec<D>& target, std::span<CollisionPlane<D>> planes);
 
-/// The velocity [m/s] closest to `velocity` that goes into none of the planes that pushed
-/// (push > 0): the same projection with all offsets at 0, so the last plane does not undo the
-/// first.
+/// The velocity [m/s] closest to `velocity` that goes into none of the planes whose push is
+/// positive: the same projection with all offsets at 0, so the last plane does not undo the first.
 template <int D>
 Vec<D> clip_velocity(const Vec<D>& velocity, std::span<const CollisionPlane<D>> planes);
 
