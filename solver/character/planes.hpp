@@ -52,8 +52,8 @@ Vec<D> sweep_planes(const Vec<D>& target, std::span<const CollisionPlane<D>> pla
 /// still violated, as many rounds of simultaneous projection, which tend to the least sum of
 /// squared violations: between two walls, the middle. Finite for inputs below 1e15 m.
 /// @pre normals are unit.
-/// Source: Catto (GDC 2014); Welzl, "Smallest enclosing disks" (1991), for problems of this type;
-/// Cimmino (1938) for the simultaneous projections.
+/// Source: Catto (GDC 2014), Welzl, "Smallest enclosing disks" (1991), for problems of this type,
+/// and Cimmino (1938) for the simultaneous projections.
 template <int D>
 PlaneResult<D> solve_planes(const Vec<D>& target, std::span<CollisionPlane<D>> planes);
 
