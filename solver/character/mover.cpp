@@ -112,8 +112,9 @@ static int slide(Passage<D>& passage, Vec<D>& at) {
   const MoverDef<D>& def = passage.def;
   for (int iteration = 1; iteration <= def.iterations_max; ++iteration) {
     collect_planes(passage, at);
-    // What is touched cannot be cast against, so the cast is of a thinner mover, clear of it.
-    const float inside = max(0.0f, 0.25f * def.skin - passage.separation);
+    // What is overlapped or touched cannot be cast against, so then a thinner mover is cast.
+    const float thinner = max(0.0f, 0.25f * def.skin - passage.separation);
+    float inside = passage.separation > 0.0f ? 0.0f : thinner;
     const bool deep = inside >= def.radius;
     const Vec<D> solved = solve_planes<D>(deep ? at : passage.target, passage.planes).position;
     const Vec<D> translation = solved - at;
@@ -124,8 +125,12 @@ static int slide(Passage<D>& passage, Vec<D>& at) {
     }
     std::optional<QueryHit<D>> hit;
     Vec<D> touch = at;
-    const Probe<D> probe = probe_of(def, def.radius - inside);
-    at = advance(passage, probe, at, translation, def.skin + inside, hit, touch);
+    const Vec<D> from = at;
+    at = advance(passage, probe_of(def, def.radius - inside), from, translation, def.skin + inside,
+                 hit, touch);
+    if (hit && hit->fraction <= 0.0f && inside < thinner)
+      at = advance(passage, probe_of(def, def.radius - thinner), from, translation,
+                   def.skin + thinner, hit, touch);
     if (hit) passage.met.push_back({*hit, touch});
   }
   return def.iterations_max;
@@ -150,15 +155,31 @@ static bool supports(const Passage<D>& passage, const QueryHit<D>& hit) {
   return below && below->fraction > 0.0f && dot(below->normal, def.up) >= def.slope_cos_min;
 }
 
+/// Distance to the nearest shape, at most the skin; negative in overlap.
+template <int D>
+static float separation_at(const Passage<D>& passage, const Vec<D>& at) {
+  const MoverDef<D>& def = passage.def;
+  float least = def.skin;
+  for (const QueryHit<D>& hit : overlap(passage.world, probe_of(def, def.radius),
+                                        pose_at(passage, at), def.skin, def.filter))
+    least = min(least, hit.separation);
+  return least;
+}
+
 /// Straight down until the mover stands `skin` above what it meets within `reach`. The cast is of
-/// a narrower mover, or a wall that it slides along would count as what it met.
+/// a narrower mover, or a wall that it slides along would count as what it met; no `hit` where the
+/// mover itself is too wide for the place.
 template <int D>
 static Vec<D> set_down(const Passage<D>& passage, const Vec<D>& at, float reach,
                        std::optional<QueryHit<D>>& hit) {
   const MoverDef<D>& def = passage.def;
   const Probe<D> narrow = probe_of(def, def.radius - def.skin);
   Vec<D> touch = at;
-  return advance(passage, narrow, at, -(reach + def.skin) * def.up, 2.0f * def.skin, hit, touch);
+  const Vec<D> lowered =
+      advance(passage, narrow, at, -(reach + def.skin) * def.up, 2.0f * def.skin, hit, touch);
+  const float least = min(0.0f, separation_at(passage, at)) - 1.0e-3f * def.skin;
+  if (hit && separation_at(passage, lowered) < least) hit.reset();
+  return lowered;
 }
 
 /// Up, forward by `ahead` and down; false, and nothing has changed, where that is no higher or

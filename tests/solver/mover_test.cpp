@@ -137,39 +137,41 @@ TEST(Mover, EndsAtThePointClosestToTheTargetFromAnyStart) {
 }
 
 /// A floor and a step of this height from x = 1 on.
-TEST(Mover, NeverOverlapsInAClutterAtAnySpeed) {
-  std::mt19937 random(7);
+static void wander_in_clutter(unsigned seed) {
+  std::mt19937 random(seed);
   const auto draw = [&](float low, float high) {
     return low + (high - low) * static_cast<float>(random() >> 8) / 16777216.0f;
   };
   World<2> world = make_world<2>();
-  for (int i = 0; i < 80; ++i) {
+  for (int i = 0; i < 120; ++i) {
+    const Vec<2> at = {{draw(-8.0f, 8.0f), draw(-8.0f, 8.0f)}};
+    if (length(at) < 1.5f) continue;
     BodyDef<2> def;
     def.kind = BodyKind::kStatic;
-    def.position = {{draw(-8.0f, 8.0f), draw(-8.0f, 8.0f)}};
-    if (length(def.position) < 2.0f) continue;
+    def.position = at;
     def.rotation = turned(draw(0.0f, 6.0f));
     const float size = draw(0.1f, 0.8f);
-    add(world, def,
-        i % 3 == 0   ? ball<2>(size)
-        : i % 3 == 1 ? box(size, 0.05f)
-                     : capsule(size, 0.2f));
+    const ShapeDef<2> shapes[] = {ball<2>(size), box(size, 0.05f), capsule(size, 0.2f)};
+    add(world, def, shapes[i % 3]);
   }
   for (const float speed : {1.0f, 10.0f, 1000.0f}) {
     MoverState<2> state;
     float least = 1.0f;
-    float travelled = 0.0f;
     for (int tick = 0; tick < 3000; ++tick) {
       if (tick % 20 == 0) state.velocity = {{draw(-speed, speed), draw(-speed, speed)}};
-      const Vec<2> before = state.position;
       state = move(world.state(), ball_mover<2>(0.2f), state, kMoveTick).state;
-      travelled += length(state.position - before);
       least = std::min(least, clearance(world, ball_mover<2>(0.2f), state.position));
       if (length(state.position) > 9.0f) state.position = Vec<2>::zero();
     }
     EXPECT_GE(least, 0.0f) << speed;
-    EXPECT_GT(travelled, 5.0f) << speed;
+    EXPECT_LE(least, 1.01f * kSkin) << speed << ": it met nothing";
   }
+}
+
+// Two of 60 seeds, chosen because following the ground once overlapped in them.
+TEST(Mover, NeverOverlapsInAClutterAtAnySpeed) {
+  wander_in_clutter(11);
+  wander_in_clutter(49);
 }
 
 // Deeper than its radius there is nothing left to cast, and it only gets out.
