@@ -46,6 +46,11 @@ struct Filter {
   std::uint32_t category = 1;
   std::uint32_t mask = 0xffffffffu;
   std::int32_t group = 0;
+
+  friend bool filters_meet(const Filter& a, const Filter& b) {
+    if (a.group != 0 && a.group == b.group) return a.group > 0;
+    return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
+  }
 };
 
 /// Friction mixes as sqrt(a b), restitution and rolling resistance as max(a, b).

@@ -19,4 +19,16 @@ Rotation<3> rotation_by(const Spin<3>& turn) {
   return {{scale * turn[0], scale * turn[1], scale * turn[2], cosine}};
 }
 
+Spin<2> turn_of(const Rotation<2>& q) {
+  return {{atan2(q[1], q[0])}};
+}
+Spin<3> turn_of(const Rotation<3>& q) {
+  const Vec<3> axis = {{q[0], q[1], q[2]}};
+  const float sine = length(axis);
+  const float sign = q[3] < 0.0f ? -1.0f : 1.0f;
+  // 2 atan2(s, c) / s -> 2 where the division has no digits left.
+  const float scale = sine > 1.0e-6f ? 2.0f * atan2(sine, sign * q[3]) / sine : 2.0f;
+  return (sign * scale) * axis;
+}
+
 }  // namespace cycloid::solver

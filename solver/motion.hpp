@@ -29,6 +29,10 @@ struct BodyMass {
 Rotation<2> rotation_by(const Spin<2>& turn);
 Rotation<3> rotation_by(const Spin<3>& turn);
 
+/// The rotation vector of q, rad, the shorter way: the inverse of rotation_by.
+Spin<2> turn_of(const Rotation<2>& q);
+Spin<3> turn_of(const Rotation<3>& q);
+
 /// q' = exp(turn) q, at unit length.
 template <int D>
 void turn_by(const Spin<D>& turn, Motion<D>& motion) {

@@ -50,6 +50,7 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
       solve_substep<D, W>(context, state, time_s, workers, scratch);
   }
   store_impulses<D, W>(workers, scratch);
+  stop_fast_bodies(context, state, workers, scratch);
 }
 
 template <int D>

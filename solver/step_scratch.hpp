@@ -85,6 +85,7 @@ struct StepScratch {
   std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.
   std::vector<Motion<D>> saved_motions;  ///< Of pseudo-velocity sweeps and of XPBD's substep.
   std::vector<JointRow<D>> saved_rows;
+  std::vector<float> stops;  ///< By body: the fraction of the tick at which it meets something.
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>
       contact_blocks;  ///< Only that of the chosen width is filled.

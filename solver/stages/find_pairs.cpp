@@ -1,34 +1,9 @@
 #include <algorithm>
 
+#include "solver/stages/may_touch.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
-
-/// Only a body that forces move answers to a contact.
-static bool responds(BodyKind kind) {
-  return kind == BodyKind::kDynamic || kind == BodyKind::kParticle;
-}
-
-static bool filters_meet(const Filter& a, const Filter& b) {
-  if (a.group != 0 && a.group == b.group) return a.group > 0;
-  return (a.category & b.mask) != 0 && (b.category & a.mask) != 0;
-}
-
-static std::uint64_t body_pair_key(std::uint32_t a, std::uint32_t b) {
-  return a < b ? (std::uint64_t{a} << 32) | b : (std::uint64_t{b} << 32) | a;
-}
-
-template <int D>
-static bool may_touch(const WorldState<D>& state, const StepScratch<D>& scratch,
-                      std::uint32_t shape_a, std::uint32_t shape_b) {
-  const Shape<D>& a = state.shapes[shape_a];
-  const Shape<D>& b = state.shapes[shape_b];
-  if (a.body == b.body) return false;
-  if (!responds(state.bodies[a.body].kind) && !responds(state.bodies[b.body].kind)) return false;
-  if (!filters_meet(a.filter, b.filter)) return false;
-  return !std::binary_search(scratch.jointed_bodies.begin(), scratch.jointed_bodies.end(),
-                             body_pair_key(a.body, b.body));
-}
 
 template <int D>
 static void list_jointed_bodies(const WorldState<D>& state, StepScratch<D>& scratch) {

@@ -1,22 +1,8 @@
 #include "solver/constraints/contact_position.hpp"
 #include "solver/constraints/joint_solve.hpp"
 #include "solver/stages/stages.hpp"
-#include "solver/trig.hpp"
 
 namespace cycloid::solver {
-
-/// The rotation vector of q, rad, the shorter way.
-static Spin<2> turn_of(const Rotation<2>& q) {
-  return {{atan2(q[1], q[0])}};
-}
-static Spin<3> turn_of(const Rotation<3>& q) {
-  const Vec<3> axis = {{q[0], q[1], q[2]}};
-  const float sine = length(axis);
-  const float sign = q[3] < 0.0f ? -1.0f : 1.0f;
-  // 2 atan2(s, c) / s -> 2 where the division has no digits left.
-  const float scale = sine > 1.0e-6f ? 2.0f * atan2(sine, sign * q[3]) / sine : 2.0f;
-  return (sign * scale) * axis;
-}
 
 /// v = (x - x_before) / h,  w = turn / h.
 template <int D>

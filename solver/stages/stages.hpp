@@ -59,6 +59,9 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
 
 template <int D, int W>
 void store_impulses(Workers& workers, StepScratch<D>& scratch);
+template <int D>
+void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                      StepScratch<D>& scratch);
 /// The first body that would leave the bounds, or a fault with field kFaultNone.
 template <int D>
 Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch);

@@ -1,0 +1,97 @@
+#include "solver/queries/time_of_impact.hpp"
+#include "solver/stages/may_touch.hpp"
+#include "solver/stages/stages.hpp"
+#include "solver/trig.hpp"
+
+namespace cycloid::solver {
+
+/// A body's way in this tick. Above half a turn the final rotation no longer says how far it
+/// turned; the spin does.
+template <int D>
+static BodySweep<D> sweep_of(const StepContext<D>& context, const WorldState<D>& state,
+                             const StepScratch<D>& scratch, std::uint32_t body) {
+  const Motion<D>& motion = scratch.motions[body];
+  const Spin<D> spun = context.tick_s * motion.spin;
+  const bool winds = dot(spun, spun) > kPi * kPi;
+  return {{state.bodies[body].position, state.bodies[body].rotation},
+          motion.delta_position,
+          winds ? spun : turn_of(motion.delta_rotation)};
+}
+
+/// Whether it moves so far in a tick that it could pass through something, or over its corner.
+template <int D>
+static bool is_fast(const Body<D>& body, const BodySweep<D>& sweep) {
+  if (!responds(body.kind) || body.extent == 0.0f) return false;
+  const float way = length(sweep.translation) + body.extent * length(sweep.turn);
+  return way > 0.5f * body.thickness;
+}
+
+/// The fraction of the tick at which one shape meets another that it did not touch at the start.
+/// Those that touched belong to the contact solver.
+template <int D>
+static float fraction_of(const StepContext<D>& context, const WorldState<D>& state,
+                         const StepScratch<D>& scratch, std::uint32_t shape, std::uint32_t other,
+                         const BodySweep<D>& sweep) {
+  const Shape<D>& a = state.shapes[other];
+  const float slop = context.tuning.slop;
+  const BodySweep<D> other_sweep = sweep_of(context, state, scratch, a.body);
+  const Impact<D> impact =
+      time_of_impact(a, other_sweep, state.shapes[shape], sweep, 0.0f, 0.5f * slop + 1.0e-4f);
+  return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
+}
+
+template <int D>
+static float earliest_impact(const StepContext<D>& context, const WorldState<D>& state,
+                             const StepScratch<D>& scratch, std::uint32_t body,
+                             const BodySweep<D>& sweep) {
+  float first = 1.0f;
+  Vec<D> reach;
+  for (float& value : reach.v) value = state.bodies[body].extent;
+  Bounds<D> bounds{sweep.start.position - reach, sweep.start.position + reach};
+  bounds = merged(bounds, {bounds.lower + sweep.translation, bounds.upper + sweep.translation});
+  for (std::uint32_t s = state.bodies[body].first_shape; s != kNone; s = state.shapes[s].next) {
+    const auto meet = [&](std::uint32_t other) {
+      if (!may_touch(state, scratch, s, other)) return;
+      first = min(first, fraction_of(context, state, scratch, s, other, sweep));
+    };
+    for (const std::uint32_t half_space : scratch.unbounded) meet(half_space);
+    scratch.tree.query(bounds, [&](int rank) { meet(scratch.tree.leaf(rank).id); });
+  }
+  return first;
+}
+
+/// Continuous collision: a fast body ends the tick where it first meets what it did not touch
+/// before. Its velocity stays; the contact of the next tick answers to it. The rest of its way is
+/// lost.
+///
+/// Reads motions, shapes and the tree; writes first the stop of each body, from the ways of all as
+/// the sweeps left them, then the deltas. So any split into ranges gives the same bits.
+template <int D>
+void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                      StepScratch<D>& scratch) {
+  if (context.tuning.continuous == 0) return;
+  scratch.stops.assign(state.bodies.size(), 1.0f);
+  workers.parallel_for(static_cast<int>(state.bodies.size()), kPairGrain, [&](Range range) {
+    for (auto i = static_cast<std::uint32_t>(range.begin);
+         i < static_cast<std::uint32_t>(range.end); ++i) {
+      if (scratch.awake[i] == 0) continue;
+      const BodySweep<D> sweep = sweep_of(context, state, scratch, i);
+      if (is_fast(state.bodies[i], sweep))
+        scratch.stops[i] = earliest_impact(context, state, scratch, i, sweep);
+    }
+  });
+  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+    if (scratch.stops[i] == 1.0f) continue;
+    const BodySweep<D> sweep = sweep_of(context, state, scratch, i);
+    Motion<D>& motion = scratch.motions[i];
+    motion.delta_position = scratch.stops[i] * sweep.translation;
+    motion.delta_rotation = rotation_by(scratch.stops[i] * sweep.turn);
+  }
+}
+
+template void stop_fast_bodies(const StepContext<2>&, const WorldState<2>&, Workers&,
+                               StepScratch<2>&);
+template void stop_fast_bodies(const StepContext<3>&, const WorldState<3>&, Workers&,
+                               StepScratch<3>&);
+
+}  // namespace cycloid::solver

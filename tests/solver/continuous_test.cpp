@@ -1,0 +1,100 @@
+#include <gtest/gtest.h>
+
+#include "tests/solver/world_fixture.hpp"
+
+namespace cycloid::solver {
+
+static WorldDef<2> restless() {
+  WorldDef<2> def;
+  def.tuning.sleep_s = 0.0f;
+  return def;
+}
+
+static BodyId add_wall(World<2>& world, float x) {
+  BodyDef<2> def;
+  def.kind = BodyKind::kStatic;
+  def.position = {{x, 0.0f}};
+  return add(world, def, box(0.01f, 50.0f));
+}
+
+// Row 22 of the scenes where methods fail: a ball of 0.05 m against a wall of 0.02 m.
+TEST(Continuous, NoBallPassesAThinWallAtAnySpeedAngleOrPhase) {
+  for (const float speed : {1.0f, 10.0f, 200.0f, 1000.0f, 5000.0f})
+    for (const float angle : {0.0f, 0.7f, 1.4f})
+      for (int phase = 0; phase < 8; ++phase) {
+        World<2> world = make_world(restless());
+        add_wall(world, 3.0f);
+        BodyDef<2> def;
+        def.position = {{0.05f * static_cast<float>(phase), 0.0f}};
+        def.velocity = {{speed * std::cos(angle), speed * std::sin(angle) * 0.01f}};
+        const BodyId id = add(world, def, ball<2>(0.05f));
+        const int ticks = static_cast<int>(60.0f * 4.0f / def.velocity[0]) + 30;
+        for (int tick = 0; tick < ticks; ++tick) {
+          step(world, 1);
+          ASSERT_LT(view(world, id).position[0], 3.0f) << speed << ' ' << angle << ' ' << phase;
+        }
+      }
+}
+
+TEST(Continuous, ABulletHitsAWallThatAnotherBodyHides) {
+  World<2> world = make_world(restless());
+  add_wall(world, 3.0f);
+  const BodyId light = add_at<2>(world, {{1.5f, 0.0f}}, ball<2>(0.1f));
+  BodyDef<2> def;
+  def.velocity = {{800.0f, 0.0f}};
+  const BodyId bullet = add(world, def, ball<2>(0.05f));
+  step(world, 60);
+  EXPECT_LT(view(world, bullet).position[0], 3.0f);
+  EXPECT_LT(view(world, light).position[0], 3.0f);
+}
+
+// Row 23: a rod of 2 m x 0.02 m at 50 rad/s against a small peg. Without the sweep it turns past.
+TEST(Continuous, ASpinningRodDoesNotPassThePeg) {
+  const auto passes = [](std::uint32_t continuous, float spin) {
+    WorldDef<2> def = restless();
+    def.tuning.continuous = continuous;
+    World<2> world = make_world(def);
+    BodyDef<2> peg;
+    peg.kind = BodyKind::kStatic;
+    peg.position = {{0.0f, 0.8f}};
+    add(world, peg, ball<2>(0.02f));
+    BodyDef<2> rod;
+    rod.spin = {{spin}};
+    const BodyId id = add(world, rod, box(1.0f, 0.01f));
+    JointDef<2> axle;
+    axle.body_a = add_wall(world, -30.0f);
+    axle.anchor_a = {{30.0f, 0.0f}};
+    axle.body_b = id;
+    EXPECT_TRUE(world.create_joint(axle).ok());
+    float turned_by = 0.0f;
+    Rotation<2> before = view(world, id).rotation;
+    for (int tick = 0; tick < 60; ++tick) {
+      step(world, 1);
+      const Rotation<2> now = view(world, id).rotation;
+      turned_by += std::atan2(now[1] * before[0] - now[0] * before[1],
+                              now[0] * before[0] + now[1] * before[1]);
+      before = now;
+      if (turned_by > 1.7f) return true;
+    }
+    return false;
+  };
+  EXPECT_FALSE(passes(1, 50.0f));
+  EXPECT_FALSE(passes(1, 37.0f));
+  EXPECT_TRUE(passes(0, 50.0f));
+}
+
+TEST(Continuous, ItDoesNotHoldWhatSlidesOrRolls) {
+  WorldDef<2> def = restless();
+  def.gravity = {{0.0f, -10.0f}};
+  def.materials = {{0.0f, 0.0f, 0.0f}};
+  World<2> world = make_world(def);
+  add_ground<2>(world, up<2>());
+  BodyDef<2> slider;
+  slider.position = {{0.0f, 0.05f}};
+  slider.velocity = {{300.0f, 0.0f}};
+  const BodyId id = add(world, slider, box(0.05f, 0.05f));
+  step(world, 60);
+  EXPECT_NEAR(view(world, id).position[0], 300.0f, 0.5f);
+}
+
+}  // namespace cycloid::solver
