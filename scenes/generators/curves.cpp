@@ -111,6 +111,15 @@ static void add_ramp(Scene& scene, float x, float y, SceneBody body, const char*
   scene.bodies.push_back(body);
 }
 
+static void add_walls(SceneBody& body, float half_width) {
+  for (const float side : {-1.0f, 1.0f}) {
+    SceneShape& shape = body.shapes.emplace_back();
+    shape.kind = solver::ShapeKind::kHalfSpace;
+    shape.normal = {side, 0.0f, 0.0f};
+    shape.offset = -half_width;
+  }
+}
+
 Scene rolling() {
   Scene scene = planar_scene("rolling", "What rolls, slides and stays on ramps of 0.3 rad.");
   scene.materials[0].name = "ramp";
@@ -121,29 +130,33 @@ Scene rolling() {
   scene.materials.push_back({"ice", 0.0f, 0.0f, 0.0f});
   scene.materials.push_back({"wood", 0.04f, 0.0f, 0.0f});  // Against the ramp 0.2.
   scene.bodies.push_back(ground());
+  add_walls(scene.bodies[0], 22.0f);
   const SceneBody ball = body_at("", {}, ball_shape(0.4f));
   SceneBody named = ball;
   named.name = "roller";
-  add_ramp(scene, -14.0f, 8.0f, named, "rubber");
-  add_ramp(scene, -14.0f, 5.0f, ball, "sand");
-  add_ramp(scene, -14.0f, 2.0f, ball, "mud");
-  add_ramp(scene, -2.0f, 8.0f, ball, "ice");
-  SceneBody box = body_at("slider", {}, box_shape(0.4f, 0.4f));
-  add_ramp(scene, -2.0f, 5.0f, box, "wood");
-  box.name = "";
-  add_ramp(scene, -2.0f, 2.0f, box, "rubber");
-  box.fixed_rotation = true;
-  box.name = "upright";
-  add_ramp(scene, 10.0f, 8.0f, box, "wood");
+  SceneBody box = body_at("", {}, box_shape(0.4f, 0.4f));
+  SceneBody slider = box;
+  slider.name = "slider";
+  SceneBody upright = box;
+  upright.name = "upright";
+  upright.fixed_rotation = true;
   SceneBody particle = ball;
   particle.kind = solver::BodyKind::kParticle;
   particle.mass = 1.0f;
-  add_ramp(scene, 10.0f, 5.0f, particle, "wood");
-  add_ramp(scene, 10.0f, 2.0f, particle, "rubber");
+  // From the top row nothing falls, so that what comes down meets nothing.
+  add_ramp(scene, -15.0f, 8.0f, ball, "mud");
+  add_ramp(scene, -2.0f, 8.0f, box, "rubber");
+  add_ramp(scene, 11.0f, 8.0f, particle, "rubber");
+  add_ramp(scene, -15.0f, 5.0f, ball, "sand");
+  add_ramp(scene, -2.0f, 5.0f, slider, "wood");
+  add_ramp(scene, 11.0f, 5.0f, upright, "wood");
+  add_ramp(scene, -15.0f, 2.0f, named, "rubber");
+  add_ramp(scene, -2.0f, 2.0f, ball, "ice");
+  add_ramp(scene, 11.0f, 2.0f, particle, "wood");
   Seat seat;
   seat.name = "pusher";
-  seat.controls.push_back(force_control(0, "roller", {4.0f, 0.0f, 0.0f}));
-  Control turn = force_control(1, "roller", {2.0f, 0.0f, 0.0f});
+  seat.controls.push_back(force_control(0, "roller", {2.0f, 0.0f, 0.0f}));
+  Control turn = force_control(1, "roller", {0.3f, 0.0f, 0.0f});
   turn.effect = Effect::kTorque;
   seat.controls.push_back(turn);
   seat.controls.push_back(impulse_control(0, "upright", {-1.0f, 1.0f, 0.0f}));

@@ -16,7 +16,7 @@ static SceneBody road() {
     float sine = 0.0f;
     float cosine = 0.0f;
     solver::sin_cos(12.0f * solver::kPi * share, sine, cosine);
-    points.push_back({5.0f + 40.0f * share, 0.5f * share * (1.0f - cosine), 0.0f});
+    points.push_back({5.0f + 40.0f * share, 0.3f * share * (1.0f - cosine), 0.0f});
   }
   points.push_back({70.0f, 0.0f, 0.0f});
   points.push_back({70.0f, 6.0f, 0.0f});
@@ -38,7 +38,7 @@ static void add_wheel(Scene& scene, const std::string& name, float x) {
   joint.lower = -0.25f;
   joint.upper = 0.25f;
   joint.motor = MotorKind::kSpeed;
-  joint.motor_max = 12.0f;
+  joint.motor_max = 6.0f;
   scene.joints.push_back(joint);
 }
 
@@ -62,12 +62,12 @@ Scene vehicle() {
   Seat seat;
   seat.name = "driver";
   // A wheel that rolls to the right turns clockwise.
-  seat.controls.push_back(motor_control(0, "rear-wheel-motor", -20.0f));
-  seat.controls.push_back(motor_control(0, "front-wheel-motor", -20.0f));
-  Control lean = force_control(1, "chassis", {10.0f, 0.0f, 0.0f});
+  seat.controls.push_back(motor_control(0, "rear-wheel-motor", -18.0f));
+  seat.controls.push_back(motor_control(0, "front-wheel-motor", -18.0f));
+  Control lean = force_control(1, "chassis", {2.0f, 0.0f, 0.0f});
   lean.effect = Effect::kTorque;
   seat.controls.push_back(lean);
-  seat.controls.push_back(impulse_control(0, "chassis", {0.0f, 15.0f, 0.0f}));
+  seat.controls.push_back(impulse_control(0, "chassis", {0.0f, 5.0f, 0.0f}));
   seat.script.push_back({30, 0, 0, 1, {1.0f, 0.0f, 0.0f, 0.0f}, 0});
   seat.script.push_back({200, 0, 200, 20, {0.5f, 1.0f, 0.0f, 0.0f}, 1});
   seat.script.push_back({480, 520, 0, 1, {-0.5f, 0.0f, 0.0f, 0.0f}, 0});
@@ -207,7 +207,7 @@ Scene machines() {
   add_gears(scene, -10.0f, 3.0f);
   add_pulley(scene, -1.5f);
   add_cantilever(scene, "rigid", 3.0f, 5.0f, 0.0f);
-  add_cantilever(scene, "soft", 3.0f, 3.0f, 6.0f);
+  add_cantilever(scene, "soft", 3.0f, 3.0f, 15.0f);
   add_hanging(scene, 9.0f, 5.0f);
   Seat seat;
   seat.name = "operator";

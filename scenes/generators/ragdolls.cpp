@@ -38,6 +38,7 @@ static constexpr Part kPerson[kParts] = {
 struct Person {
   std::string prefix;
   Triple hips;
+  Triple velocity;
   float angle;         ///< rad, of the hips.
   std::int32_t group;  ///< Negative: its parts do not collide with each other.
   bool upright;        ///< Starts with its limbs straight instead of in the pose.
@@ -78,6 +79,7 @@ static std::size_t add_person(Scene& scene, const Person& person) {
     SceneBody body = body_at(person.prefix + part.name, places[i],
                              capsule_shape({}, {0.0f, part.length, 0.0f}, part.radius));
     body.angle = angles[i];
+    body.velocity = person.velocity;
     body.shapes[0].density = 120.0f;
     body.shapes[0].filter.group = person.group;
     scene.bodies.push_back(body);
@@ -104,7 +106,9 @@ Scene ragdolls(int count) {
   for (int i = 0; i < count; ++i) {
     const float place = static_cast<float>(i);
     const Triple hips = {-5.0f + 0.9f * static_cast<float>(i % 6), 5.0f + 1.2f * place, 0.0f};
-    add_person(scene, {"p" + std::to_string(i) + "-", hips, 0.7f * place, -1 - i, false});
+    add_person(
+        scene,
+        {"p" + std::to_string(i) + "-", hips, {1.5f, 0.0f, 0.0f}, 0.7f * place, -1 - i, false});
   }
   add_thrower(scene, {-12.0f, 5.0f, 0.0f}, {9.0f, 2.0f, 0.0f});
   scene.prefabs[0].shapes[0].density = 40.0f;
@@ -116,12 +120,10 @@ Scene ragdolls(int count) {
   return scene;
 }
 
-/// Turns the friction of a joint into a servo: a spring to `target` with at most `torque`.
+/// Turns the friction of a joint into a servo: it holds `target` with at most `torque`.
 static void hold(SceneJoint& joint, float target, float torque) {
   joint.motor = MotorKind::kPosition;
   joint.motor_max = torque;
-  joint.hertz = 8.0f;
-  joint.damping_ratio = 1.0f;
   joint.target = target;
 }
 
@@ -135,7 +137,7 @@ Scene ragdoll_motors() {
       planar_scene("ragdoll-motors", "A person on servos stands on one leg, kicks and waves.");
   scene.materials[0].friction = 0.9f;
   scene.bodies.push_back(ground());
-  const std::size_t first = add_person(scene, {"", {0.0f, 0.86f, 0.0f}, 0.0f, -1, true});
+  const std::size_t first = add_person(scene, {"", {0.0f, 0.86f, 0.0f}, {}, 0.0f, -1, true});
   const float torques[kParts - 1] = {200.0f, 40.0f,  40.0f,  20.0f,  40.0f,
                                      20.0f,  150.0f, 100.0f, 250.0f, 200.0f};
   for (std::size_t i = 0; i < 10; ++i) hold(scene.joints[first + i], 0.0f, torques[i]);
@@ -156,8 +158,8 @@ Scene ragdoll_motors() {
   scene.bodies.push_back(ball);
   add_thrower(scene, {-6.0f, 1.5f, 0.0f}, {5.0f, 2.0f, 0.0f});
   scene.prefabs[0].shapes[0].radius = 0.2f;
-  scene.seats[0].script[0].from = 360;
   Seat& seat = scene.seats[0];
+  seat.script[0].from = 330;
   seat.controls.push_back(force_control(0, "torso", {60.0f, 0.0f, 0.0f}));
   seat.script.push_back({120, 0, 120, 10, {0.5f, 0.0f, 0.0f, 0.0f}, 0});
   seat.script.push_back({180, 0, 120, 10, {-0.5f, 0.0f, 0.0f, 0.0f}, 0});
