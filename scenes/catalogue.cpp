@@ -27,6 +27,10 @@ static constexpr Generator kGenerators[] = {
     {"bridge", "bridge", "planks", 40, 2, 1000, bridge},
     {"ball-pit-3d", "ball-pit-3d", "balls", 150, 1, 10000, ball_pit},
     {"room", "room-200", "bodies", 200, 9, 5000, room},
+    {"ragdolls", "ragdolls", "count", 6, 1, 100, ragdolls},
+    {"chain-and-ball", "chain-and-ball", "links", 40, 1, 400, chain_and_ball},
+    {"overlap", "overlap", "base", 4, 1, 100, overlap},
+    {"bouncing", "bouncing", "discs", 20, 1, 100, bouncing},
 };
 
 static Loaded mistake(std::string reason) {
@@ -115,7 +119,9 @@ Loaded load(const std::string& what) {
 }
 
 std::vector<Scene> generated_defaults() {
-  std::vector<Scene> scenes = {half_pipe(), newtons_cradle()};
+  std::vector<Scene> scenes = {half_pipe(), newtons_cradle(), ragdoll_motors(), vehicle(),
+                               machines(),  beads(),          rolling(),        heavy_on_light()};
+  for (Scene& scene : method_scenes()) scenes.push_back(std::move(scene));
   for (const Generator& generator : kGenerators)
     scenes.push_back(generator.make(generator.standard));
   return scenes;

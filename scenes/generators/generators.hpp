@@ -16,12 +16,38 @@ Scene newtons_cradle();
 Scene bridge(int planks);
 Scene ball_pit(int balls);
 Scene room(int bodies);
+Scene ragdolls(int count);
+Scene ragdoll_motors();
+Scene vehicle();
+Scene machines();
+Scene beads();
+Scene rolling();
+Scene bouncing(int discs);
+/// @param links  capsules of 5.98 kg each, 1 to 400, with a ball of 4021 kg at the end.
+Scene chain_and_ball(int links);
+Scene heavy_on_light();
+Scene overlap(int base);
+/// The same small scene under each method that is not the default: "method-pgs" and so on.
+std::vector<Scene> method_scenes();
 
 // Parts that several of them use.
 
 SceneShape box_shape(float half_x, float half_y);
 SceneShape ball_shape(float radius);
+SceneShape capsule_shape(const Triple& from, const Triple& to, float radius);
+/// Solid to the right of its direction.
+SceneShape chain_shape(std::vector<Triple> points, bool loop);
 SceneBody ground();
+/// A static body without shapes, to hang joints on.
+SceneBody frame();
+SceneBody body_at(const std::string& name, const Triple& position, const SceneShape& shape);
+SceneJoint joint_between(solver::JointKind kind, const std::string& body_a, const Triple& anchor_a,
+                         const std::string& body_b, const Triple& anchor_b);
+/// A button that gives `target` an impulse, an axis that pushes it with a force.
+Control impulse_control(std::uint32_t button, const std::string& target, const Triple& value);
+Control force_control(std::uint32_t axis, const std::string& target, const Triple& value);
+/// An axis of 1 is a motor speed of `value`, rad/s or m/s.
+Control motor_control(std::uint32_t axis, const std::string& target, float value);
 /// Gravity of 10 m/s^2 downwards and one material.
 Scene planar_scene(const char* name, const char* summary);
 /// A seat whose button 0 throws a heavy ball from `position` with `velocity`, by script at ticks

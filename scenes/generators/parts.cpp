@@ -18,6 +18,22 @@ SceneShape ball_shape(float radius) {
   return shape;
 }
 
+SceneShape capsule_shape(const Triple& from, const Triple& to, float radius) {
+  SceneShape shape;
+  shape.kind = solver::ShapeKind::kCapsule;
+  shape.points = {from, to};
+  shape.radius = radius;
+  return shape;
+}
+
+SceneShape chain_shape(std::vector<Triple> points, bool loop) {
+  SceneShape shape;
+  shape.kind = solver::ShapeKind::kChain;
+  shape.points = std::move(points);
+  shape.loop = loop;
+  return shape;
+}
+
 SceneBody ground() {
   SceneBody body;
   body.name = "ground";
@@ -26,6 +42,59 @@ SceneBody ground() {
   shape.kind = solver::ShapeKind::kHalfSpace;
   shape.normal = {0.0f, 1.0f, 0.0f};
   return body;
+}
+
+SceneBody frame() {
+  SceneBody body;
+  body.name = "frame";
+  body.kind = solver::BodyKind::kStatic;
+  return body;
+}
+
+SceneBody body_at(const std::string& name, const Triple& position, const SceneShape& shape) {
+  SceneBody body;
+  body.name = name;
+  body.position = position;
+  body.shapes.push_back(shape);
+  return body;
+}
+
+SceneJoint joint_between(solver::JointKind kind, const std::string& body_a, const Triple& anchor_a,
+                         const std::string& body_b, const Triple& anchor_b) {
+  SceneJoint joint;
+  joint.kind = kind;
+  joint.body_a = body_a;
+  joint.body_b = body_b;
+  joint.anchor_a = anchor_a;
+  joint.anchor_b = anchor_b;
+  return joint;
+}
+
+Control impulse_control(std::uint32_t button, const std::string& target, const Triple& value) {
+  Control control;
+  control.source = Source::kButton;
+  control.index = button;
+  control.effect = Effect::kImpulse;
+  control.target = target;
+  control.value = value;
+  return control;
+}
+
+Control force_control(std::uint32_t axis, const std::string& target, const Triple& value) {
+  Control control;
+  control.index = axis;
+  control.target = target;
+  control.value = value;
+  return control;
+}
+
+Control motor_control(std::uint32_t axis, const std::string& target, float value) {
+  Control control;
+  control.index = axis;
+  control.effect = Effect::kMotorSpeed;
+  control.target = target;
+  control.value = {value, 0.0f, 0.0f};
+  return control;
 }
 
 Scene planar_scene(const char* name, const char* summary) {
