@@ -14,6 +14,7 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
   evaluate_contacts<D, W>(workers, scratch);
   bounce_contacts<D, W>(context, workers, scratch);
   evaluate_joints(state, time_s, workers, scratch);
+  factor_trees(context, scratch);
   warm_start_constraints<D, W>(workers, scratch);
   for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep)
     solve_constraints<D, W>(context, Sweep::kBiased, workers, scratch);
@@ -26,6 +27,7 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
   if (tuning.relax_sweeps > 0) {
     evaluate_contacts<D, W>(workers, scratch);
     evaluate_joints(state, time_s, workers, scratch);
+    factor_trees(context, scratch);
   }
   for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep)
     solve_constraints<D, W>(context, Sweep::kRelax, workers, scratch);

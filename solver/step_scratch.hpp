@@ -8,6 +8,7 @@
 #include "solver/collision/manifold.hpp"
 #include "solver/constraints/contact.hpp"
 #include "solver/constraints/joint_row.hpp"
+#include "solver/direct/tree_solver.hpp"
 #include "solver/motion.hpp"
 #include "solver/state.hpp"
 #include "solver/workers.hpp"
@@ -85,6 +86,10 @@ struct StepScratch {
   std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.
   std::vector<Motion<D>> saved_motions;  ///< Of pseudo-velocity sweeps and of XPBD's substep.
   std::vector<JointRow<D>> saved_rows;
+  std::vector<JointBlock<D>> tree_blocks;  ///< Of joint_rows, for the tree solver.
+  TreeSolver<D> trees;
+  std::vector<float> tree_wanted;
+  std::vector<float> tree_impulses;
   std::vector<float> stops;  ///< By body: the fraction of the tick at which it meets something.
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>

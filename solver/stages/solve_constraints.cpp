@@ -40,6 +40,7 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
                        StepScratch<D>& scratch) {
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
+  solve_trees(context, sweep, scratch);
   for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
     with_bodies<D>(
         scratch.joint_rows[static_cast<std::size_t>(i)], motions,

@@ -38,6 +38,10 @@ void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratc
 template <int D>
 void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
                      StepScratch<D>& scratch);
+template <int D>
+void factor_trees(const StepContext<D>& context, StepScratch<D>& scratch);
+template <int D>
+void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scratch);
 template <int D, int W>
 void warm_start_constraints(Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
