@@ -1,232 +1,226 @@
 #include "solver/direct/tree_solver.hpp"
 
+#include <algorithm>
+
 namespace cycloid::solver {
 
+/// Compliance of a row that nothing below the joint yields to, relative to the diagonal of
+/// J M^-1 J^T. Ground then weighs 1e5 links: less lets go of the load, more drowns the links.
+static constexpr float kSupport = 1e-5f;
+/// Where what is below yields less than this, relative to the same diagonal, it is `kSupport`.
+static constexpr float kYields = 1e-6f;
+/// Least pivot of a row relative to the same diagonal: what rounding leaves of a redundant row.
+static constexpr float kLeastPivot = 1e-6f;
+/// Solves with what the ones before missed. A chain between two grounds misses its rows by 2e-3 of
+/// the wanted change without, by 1e-5 with one and by 1e-7 with two, and a joint tension by 4e-3,
+/// 2e-5 and 1e-6 (10 to 160 links, one of which up to 1e5 times as heavy).
+static constexpr int kRefinements = 2;
+
+/// Inverse mass matrix of a body, element (row, column).
 template <int D>
-static bool moves(const BodyMass<D>& mass) {
-  return mass.inverse_mass > 0.0f;
+static float inverse_mass_element(const BodyMass<D>& mass, int row, int column) {
+  if (row < D || column < D) return row == column ? mass.inverse_mass : 0.0f;
+  return mass.inverse_inertia.m[(row - D) * Dim<D>::kSpin + column - D];
 }
 
-/// The rows of a joint on one of its bodies.
-template <int D>
-static const auto& jacobian_of(const JointBlock<D>& joint, std::uint32_t body) {
-  return joint.body_a == body ? joint.j_a : joint.j_b;
-}
-
-template <int D>
-std::uint32_t TreeSolver<D>::root_of(std::uint32_t body) {
-  while (union_[body] != body) {
-    union_[body] = union_[union_[body]];
-    body = union_[body];
+/// Mass matrix of a body from its inverse. A freedom that does not move gets mass 1 on the
+/// diagonal; its Jacobian columns are cleared in `load_joint`.
+template <int D, int N>
+static void mass_matrix(const BodyMass<D>& mass, float (&matrix)[N][N]) {
+  float inverse[N][N];
+  float floor[N];
+  for (int i = 0; i < N; ++i) {
+    for (int j = 0; j < N; ++j) inverse[i][j] = inverse_mass_element<D>(mass, i, j);
+    floor[i] = 1e-6f * inverse[i][i];
   }
-  return body;
-}
-
-template <int D>
-void TreeSolver<D>::choose_joints(std::span<const Block> joints,
-                                  std::span<const BodyMass<D>> masses) {
-  const std::size_t bodies = masses.size();
-  union_.resize(bodies);
-  for (std::uint32_t i = 0; i < bodies; ++i) union_[i] = i;
-  in_tree_.assign(joints.size(), 0);
-  joints_of_.resize(bodies);
-  for (auto& list : joints_of_) list.clear();
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    const Block& joint = joints[j];
-    const bool a_moves = moves(masses[joint.body_a]);
-    const bool b_moves = moves(masses[joint.body_b]);
-    if (joint.rows == 0 || (!a_moves && !b_moves)) continue;
-    if (a_moves && b_moves) {
-      const std::uint32_t a = root_of(joint.body_a);
-      const std::uint32_t b = root_of(joint.body_b);
-      if (a == b) continue;
-      union_[a < b ? b : a] = a < b ? a : b;
-    }
-    in_tree_[j] = 1;
-    if (a_moves) joints_of_[joint.body_a].push_back(static_cast<int>(j));
-    if (b_moves) joints_of_[joint.body_b].push_back(static_cast<int>(j));
+  SmallFactor<N> factor;
+  factor_small(inverse, floor, N, factor);
+  float columns[N][N] = {};
+  for (int i = 0; i < N; ++i) {
+    columns[i][i] = 1.0f;
+    solve_small(factor, N, columns[i]);
   }
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) matrix[i][j] = 0.5f * (columns[i][j] + columns[j][i]);
+  for (int i = 0; i < N; ++i)
+    if (!(inverse[i][i] > 0.0f)) matrix[i][i] = 1.0f;
 }
 
 template <int D>
-void TreeSolver<D>::grow_tree(std::span<const Block> joints, std::span<const BodyMass<D>> masses,
-                              std::uint32_t root) {
-  const std::size_t first = nodes_.size();
-  nodes_.push_back({root, -1, 0, 0, {}, {}});
-  placed_[root] = 1;
-  for (std::size_t n = first; n < nodes_.size(); ++n) {
-    const std::uint32_t body = nodes_[n].body;
-    node_of_[body] = static_cast<int>(n);
-    nodes_[n].first_link = static_cast<int>(links_.size());
-    for (const int j : joints_of_[body]) {
-      if (j == nodes_[n].parent_joint) continue;
-      const Block& joint = joints[static_cast<std::size_t>(j)];
-      const std::uint32_t other = joint.body_a == body ? joint.body_b : joint.body_a;
-      const bool has_child = moves(masses[other]);
-      links_.push_back({j, has_child ? other : kNobody});
-      if (!has_child) continue;
-      placed_[other] = 1;
-      nodes_.push_back({other, j, 0, 0, {}, {}});
-    }
-    nodes_[n].link_count = static_cast<int>(links_.size()) - nodes_[n].first_link;
-  }
-}
-
-template <int D>
-void TreeSolver<D>::analyse(std::span<const Block> joints, std::span<const BodyMass<D>> masses) {
-  choose_joints(joints, masses);
-  placed_.assign(masses.size(), 0);
-  node_of_.assign(masses.size(), -1);
-  nodes_.clear();
-  links_.clear();
-  for (std::size_t j = 0; j < joints.size(); ++j) {
-    if (in_tree_[j] == 0) continue;
-    const Block& joint = joints[j];
-    const bool a_moves = moves(masses[joint.body_a]);
-    if (a_moves && moves(masses[joint.body_b])) continue;
-    const std::uint32_t body = a_moves ? joint.body_a : joint.body_b;
-    if (placed_[body] == 0) grow_tree(joints, masses, body);
-  }
-  for (std::uint32_t body = 0; body < masses.size(); ++body)
-    if (placed_[body] == 0 && !joints_of_[body].empty()) grow_tree(joints, masses, body);
-  factors_.resize(links_.size());
-}
-
-template <int D>
-static void set_inverse_mass(const BodyMass<D>& mass,
-                             float (&w)[Dim<D>::kFreedoms][Dim<D>::kFreedoms]) {
-  constexpr int kSpin = Dim<D>::kSpin;
-  for (auto& row : w)
-    for (float& value : row) value = 0.0f;
-  for (int i = 0; i < D; ++i) w[i][i] = mass.inverse_mass;
-  for (int i = 0; i < kSpin; ++i)
-    for (int k = 0; k < kSpin; ++k) w[D + i][D + k] = mass.inverse_inertia.m[i * kSpin + k];
-}
-
-template <int D>
-void TreeSolver<D>::factor(std::span<const Block> joints, std::span<const BodyMass<D>> masses) {
-  operations_ = 0;
-  for (std::size_t n = nodes_.size(); n-- > 0;) {
-    Node& node = nodes_[n];
-    Matrix& w = node.mobility;
-    set_inverse_mass<D>(masses[node.body], w);
-    for (int l = node.first_link; l < node.first_link + node.link_count; ++l) {
-      const Link& link = links_[static_cast<std::size_t>(l)];
-      const Block& joint = joints[static_cast<std::size_t>(link.joint)];
-      LinkFactor& factor = factors_[static_cast<std::size_t>(l)];
-      const auto& j = jacobian_of(joint, node.body);
-      Matrix g = {};
-      if (link.child != kNobody) {
-        const Matrix& below = nodes_[static_cast<std::size_t>(node_of_[link.child])].mobility;
-        const auto& j_child = jacobian_of(joint, link.child);
-        for (int r = 0; r < joint.rows; ++r) {
-          Vector moved = {};
-          for (int i = 0; i < kFreedoms; ++i)
-            for (int k = 0; k < kFreedoms; ++k) moved[i] += below[i][k] * j_child[r][k];
-          for (int s = 0; s < joint.rows; ++s)
-            for (int i = 0; i < kFreedoms; ++i) g[s][r] += j_child[s][i] * moved[i];
-        }
-      }
-      for (int r = 0; r < joint.rows; ++r) {
-        for (int i = 0; i < kFreedoms; ++i) {
-          factor.response[i][r] = 0.0f;
-          for (int k = 0; k < kFreedoms; ++k) factor.response[i][r] += w[i][k] * j[r][k];
-        }
-        g[r][r] += joint.compliance;
-      }
-      for (int s = 0; s < joint.rows; ++s)
-        for (int r = 0; r < joint.rows; ++r)
-          for (int i = 0; i < kFreedoms; ++i) g[s][r] += j[s][i] * factor.response[i][r];
-      factor.g.factor(g, joint.rows);
+void TreeSolver<D>::load_joint(Step& step, const JointBlock<D>& joint,
+                               std::span<const BodyMass<D>> masses) {
+  const std::uint32_t child_slot = step.child == kNone ? kNone : slot_of_[step.child];
+  const bool child_is_a =
+      joint.body_a == child_slot || (step.child == kNone && joint.body_b == slot_of_[step.parent]);
+  step.rows = joint.rows;
+  for (int row = 0; row < joint.rows; ++row) {
+    step.softness[row] = joint.softness[row];
+    step.scale[row] = 0.0f;
+    for (const bool child : {true, false}) {
+      const std::uint32_t node = child ? step.child : step.parent;
+      float(&to)[kFreedoms] = child ? step.child_rows[row] : step.parent_rows[row];
+      const float(&from)[kFreedoms] = child == child_is_a ? joint.j_a[row] : joint.j_b[row];
       for (int i = 0; i < kFreedoms; ++i) {
-        Vector weights = {};
-        for (int r = 0; r < joint.rows; ++r) weights[r] = factor.response[i][r];
-        factor.g.solve(weights, joint.rows);
-        for (int k = 0; k < kFreedoms; ++k)
-          for (int r = 0; r < joint.rows; ++r) w[i][k] -= weights[r] * factor.response[k][r];
+        const bool free =
+            node != kNone && inverse_mass_element<D>(masses[slot_of_[node]], i, i) > 0.0f;
+        to[i] = free ? from[i] : 0.0f;
       }
-      ++operations_;
-    }
-  }
-}
-
-/// mu_c = G_c^-1 (wanted_c - J_child u_child - J_c x),  x += W J_c^T mu_c, link by link.
-template <int D>
-void TreeSolver<D>::run_links(std::span<const Block> joints, std::span<const float> wanted,
-                              Node& node, Vector& velocity, std::span<float> lambda) {
-  for (int l = node.first_link; l < node.first_link + node.link_count; ++l) {
-    const Link& link = links_[static_cast<std::size_t>(l)];
-    const Block& joint = joints[static_cast<std::size_t>(link.joint)];
-    const LinkFactor& factor = factors_[static_cast<std::size_t>(l)];
-    const auto& j = jacobian_of(joint, node.body);
-    Vector mu = {};
-    for (int r = 0; r < joint.rows; ++r) {
-      mu[r] = wanted[static_cast<std::size_t>(link.joint * kFreedoms + r)];
-      for (int i = 0; i < kFreedoms; ++i) mu[r] -= j[r][i] * velocity[i];
-      if (link.child == kNobody) continue;
-      const auto& j_child = jacobian_of(joint, link.child);
-      const Node& child = nodes_[static_cast<std::size_t>(node_of_[link.child])];
-      for (int i = 0; i < kFreedoms; ++i) mu[r] -= j_child[r][i] * child.free_velocity[i];
-    }
-    factor.g.solve(mu, joint.rows);
-    for (int i = 0; i < kFreedoms; ++i)
-      for (int r = 0; r < joint.rows; ++r) velocity[i] += factor.response[i][r] * mu[r];
-    for (int r = 0; r < joint.rows; ++r)
-      lambda[static_cast<std::size_t>(link.joint * kFreedoms + r)] = mu[r];
-  }
-}
-
-/// The links after one push back on it: lambda_c = mu_c - G_c^-1 (W J_c^T)^T sum of J^T lambda of
-/// those after c.
-template <int D>
-void TreeSolver<D>::back_substitute(std::span<const Block> joints, const Node& node,
-                                    std::span<float> lambda) {
-  Vector pushed = {};
-  for (int l = node.first_link + node.link_count - 1; l >= node.first_link; --l) {
-    const Link& link = links_[static_cast<std::size_t>(l)];
-    const Block& joint = joints[static_cast<std::size_t>(link.joint)];
-    const LinkFactor& factor = factors_[static_cast<std::size_t>(l)];
-    const auto& j = jacobian_of(joint, node.body);
-    Vector reaction = {};
-    for (int r = 0; r < joint.rows; ++r)
-      for (int i = 0; i < kFreedoms; ++i) reaction[r] += factor.response[i][r] * pushed[i];
-    factor.g.solve(reaction, joint.rows);
-    for (int r = 0; r < joint.rows; ++r) {
-      float& impulse = lambda[static_cast<std::size_t>(link.joint * kFreedoms + r)];
-      impulse -= reaction[r];
-      for (int i = 0; i < kFreedoms; ++i) pushed[i] += j[r][i] * impulse;
+      for (int i = 0; node != kNone && i < kFreedoms; ++i)
+        for (int j = 0; j < kFreedoms; ++j)
+          step.scale[row] += to[i] * inverse_mass_element<D>(masses[slot_of_[node]], i, j) * to[j];
     }
   }
 }
 
 template <int D>
-void TreeSolver<D>::solve(std::span<const Block> joints, std::span<const BodyMass<D>> masses,
-                          std::span<const float> wanted, std::span<float> lambda) {
-  for (float& impulse : lambda) impulse = 0.0f;
-  for (std::size_t n = nodes_.size(); n-- > 0;) {
-    for (float& value : nodes_[n].free_velocity) value = 0.0f;
-    run_links(joints, wanted, nodes_[n], nodes_[n].free_velocity, lambda);
+void TreeSolver<D>::eliminate(Step& step) {
+  if (step.child != kNone) {
+    BodyNode& child = nodes_[step.child];
+    factor_small(child.articulated, child.least, kFreedoms, child.factor);
+    ++operations_;
   }
-  for (Node& node : nodes_) {
-    Vector velocity = {};
-    if (node.parent_joint >= 0) {
-      const Block& joint = joints[static_cast<std::size_t>(node.parent_joint)];
-      const auto& j = jacobian_of(joint, node.body);
-      Vector push = {};
-      for (int r = 0; r < joint.rows; ++r)
-        for (int i = 0; i < kFreedoms; ++i)
-          push[i] += j[r][i] * lambda[static_cast<std::size_t>(node.parent_joint * kFreedoms + r)];
-      Matrix inverse_mass;
-      set_inverse_mass<D>(masses[node.body], inverse_mass);
-      for (int i = 0; i < kFreedoms; ++i)
-        for (int k = 0; k < kFreedoms; ++k) velocity[i] += inverse_mass[i][k] * push[k];
+  if (step.joint == kNone) return;
+  float pivot[kFreedoms][kFreedoms] = {};
+  float least[kFreedoms];
+  for (int row = 0; row < step.rows; ++row) pivot[row][row] = step.softness[row];
+  if (step.child != kNone)
+    add_gram(nodes_[step.child].factor, kFreedoms, step.child_rows, step.rows, pivot);
+  for (int row = 0; row < step.rows; ++row) {
+    if (pivot[row][row] < kYields * step.scale[row]) pivot[row][row] += kSupport * step.scale[row];
+    least[row] = kLeastPivot * step.scale[row];
+  }
+  factor_small(pivot, least, step.rows, step.factor);
+  ++operations_;
+  if (step.parent == kNone) return;
+  float columns[kFreedoms][kFreedoms];
+  for (int row = 0; row < step.rows; ++row)
+    for (int i = 0; i < kFreedoms; ++i) columns[i][row] = step.parent_rows[row][i];
+  add_gram(step.factor, step.rows, columns, kFreedoms, nodes_[step.parent].articulated);
+  ++operations_;
+}
+
+template <int D>
+void TreeSolver<D>::factor(std::span<const JointBlock<D>> joints,
+                           std::span<const BodyMass<D>> masses) {
+  for (std::size_t n = 0; n < nodes_.size(); ++n) {
+    BodyNode& node = nodes_[n];
+    mass_matrix<D>(masses[slot_of_[n]], node.mass);
+    const float none[kFreedoms] = {};
+    factor_small(node.mass, none, kFreedoms, node.factor);
+    // What hangs below only adds, so it cannot lower a pivot; rounding can.
+    for (int i = 0; i < kFreedoms; ++i) {
+      node.least[i] = node.factor.inverse_pivot[i] > 0.0f ? 1.0f / node.factor.inverse_pivot[i] : 0;
+      for (int j = 0; j < kFreedoms; ++j) node.articulated[i][j] = node.mass[i][j];
     }
-    run_links(joints, wanted, node, velocity, lambda);
-    back_substitute(joints, node, lambda);
+    ++operations_;
+  }
+  for (Step& step : steps_) {
+    if (step.joint != kNone) load_joint(step, joints[step.joint], masses);
+    eliminate(step);
   }
 }
 
-template class TreeSolver<2>;
-template class TreeSolver<3>;
+/// Solves with the residuals as right-hand sides, into `change` of nodes and steps.
+template <int D>
+void TreeSolver<D>::substitute() {
+  for (BodyNode& node : nodes_) std::copy_n(node.residual, kFreedoms, node.load);
+  for (Step& step : steps_) {
+    ++operations_;
+    if (step.joint == kNone) continue;
+    std::copy_n(step.residual, step.rows, step.load);
+    if (step.child != kNone) {
+      BodyNode& child = nodes_[step.child];
+      std::copy_n(child.load, kFreedoms, child.change);
+      solve_small(child.factor, kFreedoms, child.change);
+      subtract_product(step.child_rows, step.rows, child.change, step.load);
+    }
+    if (step.parent == kNone) continue;
+    std::copy_n(step.load, step.rows, step.change);
+    solve_small(step.factor, step.rows, step.change);
+    add_transposed_product(step.parent_rows, step.rows, step.change, nodes_[step.parent].load);
+  }
+  for (std::size_t s = steps_.size(); s-- > 0;) {
+    Step& step = steps_[s];
+    ++operations_;
+    if (step.joint != kNone) {
+      std::copy_n(step.load, step.rows, step.change);
+      if (step.parent != kNone)
+        subtract_product(step.parent_rows, step.rows, nodes_[step.parent].change, step.change);
+      solve_small(step.factor, step.rows, step.change);
+    }
+    if (step.child == kNone) continue;
+    BodyNode& child = nodes_[step.child];
+    if (step.joint != kNone)
+      add_transposed_product(step.child_rows, step.rows, step.change, child.load);
+    std::copy_n(child.load, kFreedoms, child.change);
+    solve_small(child.factor, kFreedoms, child.change);
+  }
+}
+
+/// Adds the changes to velocities and impulses and finds what the rows and momenta still miss.
+template <int D>
+void TreeSolver<D>::update_residuals(std::span<const float> rhs) {
+  for (BodyNode& node : nodes_) {
+    for (int i = 0; i < kFreedoms; ++i) node.velocity[i] += node.change[i];
+    for (int i = 0; i < kFreedoms; ++i) {
+      node.residual[i] = 0.0f;
+      for (int j = 0; j < kFreedoms; ++j) node.residual[i] -= node.mass[i][j] * node.velocity[j];
+    }
+  }
+  for (Step& step : steps_) {
+    ++operations_;
+    if (step.joint == kNone) continue;
+    for (int row = 0; row < step.rows; ++row) {
+      step.impulse[row] += step.change[row];
+      step.residual[row] =
+          rhs[step.joint * std::size_t{kFreedoms} + static_cast<std::size_t>(row)] -
+          step.softness[row] * step.impulse[row];
+    }
+    if (step.child != kNone) {
+      BodyNode& child = nodes_[step.child];
+      subtract_product(step.child_rows, step.rows, child.velocity, step.residual);
+      add_transposed_product(step.child_rows, step.rows, step.impulse, child.residual);
+    }
+    if (step.parent != kNone) {
+      BodyNode& parent = nodes_[step.parent];
+      subtract_product(step.parent_rows, step.rows, parent.velocity, step.residual);
+      add_transposed_product(step.parent_rows, step.rows, step.impulse, parent.residual);
+    }
+  }
+}
+
+template <int D>
+void TreeSolver<D>::solve(std::span<const float> rhs, std::span<float> lambda) {
+  std::fill(lambda.begin(), lambda.end(), 0.0f);
+  for (BodyNode& node : nodes_) {
+    std::fill_n(node.velocity, kFreedoms, 0.0f);
+    std::fill_n(node.change, kFreedoms, 0.0f);
+  }
+  for (Step& step : steps_) {
+    std::fill_n(step.impulse, kFreedoms, 0.0f);
+    std::fill_n(step.change, kFreedoms, 0.0f);
+  }
+  for (int i = 0; i <= kRefinements; ++i) {
+    update_residuals(rhs);
+    substitute();
+  }
+  update_residuals(rhs);
+  for (const Step& step : steps_)
+    if (step.joint != kNone)
+      std::copy_n(step.impulse, step.rows, &lambda[step.joint * std::size_t{kFreedoms}]);
+}
+
+template <int D>
+float TreeSolver<D>::velocity_change(std::uint32_t body, int freedom) const {
+  if (body >= node_of_.size() || node_of_[body] == kNone) return 0.0f;
+  return nodes_[node_of_[body]].velocity[freedom];
+}
+
+template void TreeSolver<2>::factor(std::span<const JointBlock<2>>, std::span<const BodyMass<2>>);
+template void TreeSolver<2>::solve(std::span<const float>, std::span<float>);
+template float TreeSolver<2>::velocity_change(std::uint32_t, int) const;
+template void TreeSolver<3>::factor(std::span<const JointBlock<3>>, std::span<const BodyMass<3>>);
+template void TreeSolver<3>::solve(std::span<const float>, std::span<float>);
+template float TreeSolver<3>::velocity_change(std::uint32_t, int) const;
 
 }  // namespace cycloid::solver

@@ -10,10 +10,12 @@ static bool is_rigid(const JointRow<D>& row) {
 
 template <int D>
 static JointBlock<D> block_of(const JointRow<D>& row) {
-  JointBlock<D> block;
+  JointBlock<D> block{};
+  // Between ground and ground: the tree solver leaves it out.
+  if (!is_rigid(row)) return {kNone, kNone, 0, {}, {}, {}};
   block.body_a = row.body_a;
   block.body_b = row.body_b;
-  block.rows = is_rigid(row) ? row.rows.count : 0;
+  block.rows = row.rows.count;
   for (int r = 0; r < block.rows; ++r) {
     const Row<D>& from = row.rows.rows[static_cast<std::size_t>(r)];
     for (int i = 0; i < D; ++i) {
@@ -67,17 +69,19 @@ void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scr
             rate * equality.error);
     }
   }
-  scratch.trees.solve(scratch.tree_blocks, scratch.masses, scratch.tree_wanted,
-                      scratch.tree_impulses);
+  scratch.trees.solve(scratch.tree_wanted, scratch.tree_impulses);
   for (std::size_t i = 0; i < scratch.joint_rows.size(); ++i) {
     JointRow<D>& row = scratch.joint_rows[i];
     if (!row.solved_directly) continue;
-    for (int r = 0; r < row.rows.count; ++r) {
-      const float change = scratch.tree_impulses[i * kRows + static_cast<std::size_t>(r)];
-      row.impulse[r] += change;
-      apply_row(row, row.rows.rows[static_cast<std::size_t>(r)], change,
-                scratch.motions[row.body_a], scratch.motions[row.body_b]);
-    }
+    for (int r = 0; r < row.rows.count; ++r)
+      row.impulse[r] += scratch.tree_impulses[i * kRows + static_cast<std::size_t>(r)];
+  }
+  // Not from the impulses: those of a heavy tip, rounded, would move its light links by 1e-2 g h.
+  for (std::uint32_t body = 0; body + 1 < scratch.motions.size(); ++body) {
+    Motion<D>& motion = scratch.motions[body];
+    for (int i = 0; i < D; ++i) motion.velocity[i] += scratch.trees.velocity_change(body, i);
+    for (int i = 0; i < Dim<D>::kSpin; ++i)
+      motion.spin[i] += scratch.trees.velocity_change(body, D + i);
   }
 }
 
