@@ -24,6 +24,7 @@ void add_replay(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_diff(CLI::App& app, Action& action);
 void add_scene(CLI::App& app, Action& action);
+void add_experiments(CLI::App& app, Action& action);
 void add_version(CLI::App& app, Action& action);
 void add_serve(CLI::App& app, Action& action);
 void add_join(CLI::App& app, Action& action);

@@ -31,6 +31,7 @@ static Exit parse_and_run(int argc, char** argv) {
   add_verify(app, action);
   add_diff(app, action);
   add_scene(app, action);
+  add_experiments(app, action);
   add_version(app, action);
   try {
     app.parse(argc, argv);

@@ -21,6 +21,15 @@ foreach(folder IN LISTS CYCLOID_HEADER_FOLDERS)
   list(FILTER headers EXCLUDE REGEX "/step_(context|scratch)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/${folder})
 endforeach()
+# And what the interface of a world names in deeper folders: queries, characters, constraints of the
+# user's own.
+foreach(header
+    particles/particle.hpp collision/manifold.hpp constraints/rows.hpp queries/query.hpp
+    queries/time_of_impact.hpp character/planes.hpp character/mover.hpp)
+  get_filename_component(folder ${header} DIRECTORY)
+  install(FILES ${PROJECT_SOURCE_DIR}/solver/${header}
+    DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/solver/${folder})
+endforeach()
 if(CYCLOID_NETWORK)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/client/replica
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/client FILES_MATCHING PATTERN "*.hpp")

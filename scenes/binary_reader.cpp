@@ -103,6 +103,29 @@ class BinaryReader {
     to.collide_connected = from.collide_connected();
   }
 
+  void read(const fb::ClothPin& from, ClothPin& to) {
+    to.column = from.column();
+    to.row = from.row();
+    to.body = text(from.body());
+  }
+
+  void read(const fb::Cloth& from, Cloth& to) {
+    to.name = text(from.name());
+    to.origin = triple(from.origin());
+    to.across = triple(from.across());
+    to.down = triple(from.down());
+    to.columns = from.columns();
+    to.rows = from.rows();
+    to.mass = from.mass();
+    to.radius = from.radius();
+    to.compliance = from.compliance();
+    to.shear_compliance = from.shear_compliance();
+    to.material = text(from.material());
+    if (const fb::Filter* filter = from.filter())
+      to.filter = {filter->category(), filter->mask(), filter->group()};
+    read_all(from.pins(), to.pins);
+  }
+
   void read(const fb::Control& from, Control& to) {
     to.source = static_cast<Source>(from.source());
     to.index = from.index();
@@ -156,11 +179,14 @@ class BinaryReader {
     to.sleep_s = from.sleep_s();
     to.sleep_speed = from.sleep_speed();
     to.continuous = from.continuous();
+    to.particle_substeps = from.particle_substeps();
+    to.particle_sweeps = from.particle_sweeps();
+    to.particle_damping = from.particle_damping();
   }
 
   void read(const fb::Limits& from, solver::Limits& to) {
-    to = {from.bodies(),   from.shapes(),    from.joints(),
-          from.contacts(), from.materials(), from.registers()};
+    to = {from.bodies(),    from.shapes(),    from.joints(), from.contacts(), from.materials(),
+          from.registers(), from.particles(), from.links(),  from.pins()};
   }
 
   void read(const fb::Scene& from, Scene& to) {
@@ -174,6 +200,7 @@ class BinaryReader {
     read_all(from.materials(), to.materials);
     read_all(from.bodies(), to.bodies);
     read_all(from.joints(), to.joints);
+    read_all(from.cloths(), to.cloths);
     read_all(from.prefabs(), to.prefabs);
     read_all(from.seats(), to.seats);
   }

@@ -129,6 +129,33 @@ static void pack_all(const std::vector<Part>& from, std::vector<std::unique_ptr<
   for (const Part& part : from) to.push_back(packed(part));
 }
 
+static std::unique_ptr<fb::ClothPinT> packed(const ClothPin& from) {
+  auto to = std::make_unique<fb::ClothPinT>();
+  to->column = from.column;
+  to->row = from.row;
+  to->body = from.body;
+  return to;
+}
+
+static std::unique_ptr<fb::ClothT> packed(const Cloth& from) {
+  auto to = std::make_unique<fb::ClothT>();
+  to->name = from.name;
+  to->origin = triple(from.origin);
+  to->across = triple(from.across);
+  to->down = triple(from.down);
+  to->columns = from.columns;
+  to->rows = from.rows;
+  to->mass = from.mass;
+  to->radius = from.radius;
+  to->compliance = from.compliance;
+  to->shear_compliance = from.shear_compliance;
+  to->material = from.material;
+  to->filter =
+      std::make_unique<fb::Filter>(from.filter.category, from.filter.mask, from.filter.group);
+  pack_all(from.pins, to->pins);
+  return to;
+}
+
 static std::unique_ptr<fb::TuningT> packed(const solver::Tuning& from) {
   auto to = std::make_unique<fb::TuningT>();
   to->substeps = from.substeps;
@@ -155,6 +182,9 @@ static std::unique_ptr<fb::TuningT> packed(const solver::Tuning& from) {
   to->sleep_s = from.sleep_s;
   to->sleep_speed = from.sleep_speed;
   to->continuous = from.continuous;
+  to->particle_substeps = from.particle_substeps;
+  to->particle_sweeps = from.particle_sweeps;
+  to->particle_damping = from.particle_damping;
   return to;
 }
 
@@ -166,6 +196,9 @@ static std::unique_ptr<fb::LimitsT> packed(const solver::Limits& from) {
   to->contacts = from.contacts;
   to->materials = from.materials;
   to->registers = from.registers;
+  to->particles = from.particles;
+  to->links = from.links;
+  to->pins = from.pins;
   return to;
 }
 
@@ -181,6 +214,7 @@ std::vector<std::byte> to_binary(const Scene& scene) {
   pack_all(scene.materials, to.materials);
   pack_all(scene.bodies, to.bodies);
   pack_all(scene.joints, to.joints);
+  pack_all(scene.cloths, to.cloths);
   pack_all(scene.prefabs, to.prefabs);
   pack_all(scene.seats, to.seats);
   flatbuffers::FlatBufferBuilder builder;

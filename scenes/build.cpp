@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "scenes/weave.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::scenes {
@@ -68,6 +69,7 @@ class Builder {
     built_ = std::make_unique<Built<D>>(Built<D>{std::move(world.value()), {}, {}});
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
     for (std::size_t i = 0; i < scene_.joints.size(); ++i) add_joint(i);
+    for (std::size_t i = 0; i < scene_.cloths.size(); ++i) add_cloth(i);
     for (std::size_t i = 0; i < scene_.prefabs.size(); ++i) add_prefab(i);
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) add_seat(i);
     const Error error = built_->world.resize_registers(registers_);
@@ -218,6 +220,46 @@ class Builder {
       complain(path + "/name", "is the name of an earlier joint: '" + from.name + "'");
   }
 
+  void add_cloth(std::size_t i) {
+    const Cloth& cloth = scene_.cloths[i];
+    const std::string path = at("/cloths", i);
+    const std::uint32_t material = material_index(cloth.material);
+    if (material == solver::kNone)
+      return complain(path + "/material", "names no material: '" + cloth.material + "'");
+    Weave weave;
+    if (const std::string field = weave_cloth(cloth, material, built_->world, weave);
+        !field.empty())
+      return complain(path + "/" + field, "is out of range, or there is no room for it");
+    for (std::size_t p = 0; p < cloth.pins.size(); ++p)
+      add_cloth_pin(cloth, cloth.pins[p], at(path + "/pins", p), weave);
+  }
+
+  void add_cloth_pin(const Cloth& cloth, const ClothPin& pin, const std::string& path,
+                     const Weave& weave) {
+    if (pin.column >= cloth.columns) return complain(path + "/column", "is not in the cloth");
+    if (pin.row >= cloth.rows) return complain(path + "/row", "is not in the cloth");
+    solver::PinDef<D> def;
+    def.particle = weave[pin.row * cloth.columns + pin.column];
+    const solver::Vec<D> place = built_->world.state().particles[def.particle.index].position;
+    if (pin.body.empty()) {
+      // The world's own place: a static body without shapes, made when the first cloth asks for it.
+      if (anchor_body_.index == solver::kNone) {
+        solver::BodyDef<D> fixed;
+        fixed.kind = solver::BodyKind::kStatic;
+        const auto id = built_->world.create_body(fixed, {});
+        if (!id.ok()) return complain("/limits/bodies", id.error());
+        anchor_body_ = id.value();
+      }
+      def.body = anchor_body_;
+    } else if (!find_body(pin.body, path + "/body", def.body)) {
+      return;
+    }
+    const solver::BodyView<D> view = built_->world.body(def.body).value();
+    def.anchor = solver::rotate_back(view.rotation, place - view.position);
+    const auto id = built_->world.create_pin(def);
+    if (!id.ok()) complain(path, id.error());
+  }
+
   /// A prefab is tried out in a world of its own, so that spawning it can fail for room alone.
   void add_prefab(std::size_t i) {
     const SceneBody& from = scene_.prefabs[i];
@@ -283,6 +325,7 @@ class Builder {
   std::unique_ptr<Built<D>> built_;
   std::map<std::string, solver::BodyId> bodies_;
   std::map<std::string, std::pair<solver::JointId, std::size_t>> joints_;
+  solver::BodyId anchor_body_;
   std::map<std::string, std::size_t> prefabs_;
   std::uint32_t registers_ = 0;
 };

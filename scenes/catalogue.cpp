@@ -30,6 +30,8 @@ static constexpr Generator kGenerators[] = {
     {"ragdolls", "ragdolls", "count", 6, 1, 100, ragdolls},
     {"chain-and-ball", "chain-and-ball", "links", 40, 1, 400, chain_and_ball},
     {"overlap", "overlap", "base", 4, 1, 100, overlap},
+    {"cloth", "cloth", "columns", 16, 3, 100, cloth},
+    {"cloth-3d", "cloth-3d", "columns", 16, 3, 100, cloth_3d},
     {"bouncing", "bouncing", "discs", 20, 1, 100, bouncing},
 };
 

@@ -183,6 +183,30 @@ void fields(SceneJoint& j, F&& f) {
 }
 
 template <class F>
+void fields(ClothPin& p, F&& f) {
+  f("column", p.column);
+  f("row", p.row);
+  f("body", p.body);
+}
+
+template <class F>
+void fields(Cloth& c, F&& f) {
+  f("name", c.name);
+  f("origin", c.origin);
+  f("across", c.across);
+  f("down", c.down);
+  f("columns", c.columns);
+  f("rows", c.rows);
+  f("mass", c.mass);
+  f("radius", c.radius);
+  f("compliance", c.compliance);
+  f("shear_compliance", c.shear_compliance);
+  f("material", c.material);
+  f("filter", c.filter);
+  f("pins", c.pins);
+}
+
+template <class F>
 void fields(Control& c, F&& f) {
   f("source", c.source);
   f("index", c.index);
@@ -237,6 +261,9 @@ void fields(solver::Tuning& t, F&& f) {
   f("sleep_s", t.sleep_s);
   f("sleep_speed", t.sleep_speed);
   f("continuous", t.continuous);
+  f("particle_substeps", t.particle_substeps);
+  f("particle_sweeps", t.particle_sweeps);
+  f("particle_damping", t.particle_damping);
 }
 
 template <class F>
@@ -247,6 +274,9 @@ void fields(solver::Limits& l, F&& f) {
   f("contacts", l.contacts);
   f("materials", l.materials);
   f("registers", l.registers);
+  f("particles", l.particles);
+  f("links", l.links);
+  f("pins", l.pins);
 }
 
 template <class F>
@@ -261,6 +291,7 @@ void fields(Scene& s, F&& f) {
   f("materials", s.materials);
   f("bodies", s.bodies);
   f("joints", s.joints);
+  f("cloths", s.cloths);
   f("prefabs", s.prefabs);
   f("seats", s.seats);
 }

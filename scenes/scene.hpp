@@ -85,6 +85,30 @@ struct SceneJoint {
   bool collide_connected = false;
 };
 
+/// A corner or any other point of a cloth that something holds.
+struct ClothPin {
+  std::uint32_t column = 0;
+  std::uint32_t row = 0;
+  std::string body;  ///< "": where it is in the world.
+};
+
+/// A grid of particles with links along both ways and across each cell; one row is a rope.
+struct Cloth {
+  std::string name;
+  Triple origin{};  ///< Particle (0, 0), world, m.
+  Triple across{};  ///< From a column to the next, m.
+  Triple down{};    ///< From a row to the next, m.
+  std::uint32_t columns = 1;
+  std::uint32_t rows = 1;
+  float mass = 0.01f;  ///< Of each particle, kg.
+  float radius = 0.01f;
+  float compliance = 0.0f;        ///< Of links along columns and rows, m/N.
+  float shear_compliance = 0.0f;  ///< Of links across a cell, m/N; below 0: there are none.
+  std::string material;
+  solver::Filter filter;
+  std::vector<ClothPin> pins;
+};
+
 enum class Source : std::uint32_t { kUnknown = 0, kAxis, kButton };
 enum class Effect : std::uint32_t { kUnknown = 0, kForce, kTorque, kMotorSpeed, kImpulse, kSpawn };
 enum class Frame : std::uint32_t { kUnknown = 0, kWorld, kBody };
@@ -137,6 +161,7 @@ struct Scene {
   std::vector<SceneMaterial> materials;
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
+  std::vector<Cloth> cloths;
   std::vector<SceneBody> prefabs;
   std::vector<Seat> seats;
 };

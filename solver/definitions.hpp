@@ -22,6 +22,24 @@ struct JointId {
   friend bool operator==(const JointId&, const JointId&) = default;
 };
 
+struct ParticleId {
+  std::uint32_t index = 0xffffffffu;
+  std::uint32_t generation = 0;
+  friend bool operator==(const ParticleId&, const ParticleId&) = default;
+};
+
+struct LinkId {
+  std::uint32_t index = 0xffffffffu;
+  std::uint32_t generation = 0;
+  friend bool operator==(const LinkId&, const LinkId&) = default;
+};
+
+struct PinId {
+  std::uint32_t index = 0xffffffffu;
+  std::uint32_t generation = 0;
+  friend bool operator==(const PinId&, const PinId&) = default;
+};
+
 enum class BodyKind : std::uint32_t {
   kFree = 0,   ///< An unused slot; never a valid definition.
   kStatic,     ///< Does not move.
@@ -157,6 +175,34 @@ struct JointDef {
   bool collide_connected = false;
 };
 
+/// A point of a rope or a cloth: position-based, it meets shapes and does not push them.
+template <int D>
+struct ParticleDef {
+  Vec<D> position = Vec<D>::zero();  ///< World, m.
+  Vec<D> velocity = Vec<D>::zero();  ///< m/s.
+  float mass = 0.01f;                ///< kg; 0: pinned where it is.
+  float radius = 0.01f;              ///< m, > 0.
+  std::uint32_t material = 0;
+  std::uint32_t group = 0;  ///< The user's own: which rope or cloth it is of.
+  Filter filter;
+};
+
+/// Keeps two particles `length` apart.
+struct LinkDef {
+  ParticleId particle_a;
+  ParticleId particle_b;
+  float length = 0.0f;      ///< m, >= 0.
+  float compliance = 0.0f;  ///< m/N; 0 is rigid.
+};
+
+/// Holds a particle to a point of a body, which does not feel it.
+template <int D>
+struct PinDef {
+  ParticleId particle;
+  BodyId body;
+  Vec<D> anchor = Vec<D>::zero();  ///< Frame of the body, from its origin, m.
+};
+
 /// How the errors of contacts and joints are corrected. All run through the same kernels.
 enum class Stabilisation : std::uint32_t {
   kBaumgarte,  ///< bias = (baumgarte / h) (C + slop) in the velocity rows.
@@ -211,6 +257,10 @@ struct Tuning {
   float sleep_s = 0.5f;                ///< An island that rests so long is left alone; 0: never.
   float sleep_speed = 0.05f;           ///< m/s of a body's farthest point below which it rests.
   std::uint32_t continuous = 1;  ///< 1: Fast bodies stop at what they would pass through in a tick.
+  /// Of particles: substeps do more against stretching than sweeps (particles/particle.hpp).
+  std::uint32_t particle_substeps = 40;
+  std::uint32_t particle_sweeps = 2;
+  float particle_damping = 0.0f;  ///< 1/s.
 
   /// Small steps, one soft sweep and one relax sweep each: Soft Step, TGS-Soft (Catto 2024).
   static Tuning soft_step() { return {}; }
@@ -256,6 +306,9 @@ struct Limits {
   std::uint32_t contacts = 262144;
   std::uint32_t materials = 256;
   std::uint32_t registers = 4096;
+  std::uint32_t particles = 65536;
+  std::uint32_t links = 262144;
+  std::uint32_t pins = 4096;
 };
 
 template <int D>

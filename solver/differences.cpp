@@ -115,6 +115,12 @@ std::vector<Difference> differences(const WorldState<D>& a, const WorldState<D>&
   compare_arrays("free joint", a.free_joints, b.free_joints, limit, found);
   compare_arrays("contact", a.contacts, b.contacts, limit, found);
   compare_arrays("register", a.registers, b.registers, limit, found);
+  compare_arrays("particle", a.particles, b.particles, limit, found);
+  compare_arrays("free particle", a.free_particles, b.free_particles, limit, found);
+  compare_arrays("link", a.links, b.links, limit, found);
+  compare_arrays("free link", a.free_links, b.free_links, limit, found);
+  compare_arrays("pin", a.pins, b.pins, limit, found);
+  compare_arrays("free pin", a.free_pins, b.free_pins, limit, found);
   return found;
 }
 

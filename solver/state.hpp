@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "solver/definitions.hpp"
+#include "solver/particles/particle.hpp"
 
 namespace cycloid::solver {
 
@@ -28,6 +29,7 @@ enum FaultField : std::uint64_t {
   kFaultVelocity,
   kFaultSpin,
   kFaultContacts,  ///< More contacts than `limits.contacts`.
+  kFaultParticle,  ///< A particle would leave the finite, bounded range.
 };
 
 /// The records below are the state: flat, trivially copyable, without padding. Each lists its
@@ -180,6 +182,12 @@ struct WorldState {
   std::vector<std::uint32_t> free_joints;
   std::vector<Contact<D>> contacts;  ///< Sorted by (shape_a, shape_b).
   std::vector<std::uint32_t> registers;
+  std::vector<Particle<D>> particles;
+  std::vector<std::uint32_t> free_particles;
+  std::vector<Link> links;
+  std::vector<std::uint32_t> free_links;
+  std::vector<Pin<D>> pins;
+  std::vector<std::uint32_t> free_pins;
 };
 
 static_assert(std::is_trivially_copyable_v<Body<2>> && std::is_trivially_copyable_v<Body<3>>);

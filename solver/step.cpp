@@ -1,5 +1,6 @@
 #include "solver/events.hpp"
 #include "solver/stages/stages.hpp"
+#include "solver/validate.hpp"
 #include "solver/world.hpp"
 
 namespace cycloid::solver {
@@ -13,7 +14,8 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
   integrate_velocities(context, state, workers, scratch);
   evaluate_contacts<D, W>(workers, scratch);
   bounce_contacts<D, W>(context, workers, scratch);
-  evaluate_joints(state, time_s, workers, scratch);
+  // Errors of the poses before this substep are measured against the targets of that time.
+  evaluate_joints(state, time_s - context.h, workers, scratch);
   factor_trees(context, scratch);
   warm_start_constraints<D, W>(workers, scratch);
   for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep)
@@ -117,6 +119,22 @@ static Statistics statistics_of(const WorldState<D>& state, const StepScratch<D>
   return statistics;
 }
 
+/// Particles move last, among bodies where the tick has left them. False where one leaves the
+/// bounds.
+template <int D>
+static bool particles_moved(const StepContext<D>& context, StepScratch<D>& scratch,
+                            WorldState<D>& state) {
+  const Tuning& tuning = context.tuning;
+  move_particles(context.tick_s, context.gravity,
+                 {tuning.particle_substeps, tuning.particle_sweeps, tuning.particle_damping}, state,
+                 std::span<Particle<D>>(state.particles), std::span<const Link>(state.links),
+                 std::span<const Pin<D>>(state.pins), scratch.particles);
+  for (const Particle<D>& particle : state.particles)
+    if (!within(particle.position, kPositionMax) || !within(particle.velocity, kSpeedMax))
+      return false;
+  return true;
+}
+
 template <int D>
 Error World<D>::step() {
   if (state_.header.fault.field != kFaultNone) return {Code::kFaulted, "step"};
@@ -141,8 +159,14 @@ Error World<D>::step() {
   events_.swap(ended_);
   ended_.clear();
   append_contact_events(state_, scratch.contacts, events_);
+  if (!state_.particles.empty()) scratch.before = state_;
   finalize(scratch, state_);
   rest_islands(context, scratch, state_);
+  if (!state_.particles.empty() && !particles_moved(context, scratch, state_)) {
+    state_ = scratch.before;
+    state_.header.fault = {state_.header.tick + 1, {kNone, 0}, kFaultParticle};
+    return {Code::kFaulted, "particle"};
+  }
   statistics_ = statistics_of(state_, scratch);
   return {};
 }

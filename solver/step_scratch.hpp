@@ -10,6 +10,7 @@
 #include "solver/constraints/joint_row.hpp"
 #include "solver/direct/tree_solver.hpp"
 #include "solver/motion.hpp"
+#include "solver/particles/move_particles.hpp"
 #include "solver/state.hpp"
 #include "solver/workers.hpp"
 
@@ -91,6 +92,8 @@ struct StepScratch {
   std::vector<float> tree_wanted;
   std::vector<float> tree_impulses;
   std::vector<float> stops;  ///< By body: the fraction of the tick at which it meets something.
+  ParticleScratch<D> particles;
+  WorldState<D> before;                ///< Of worlds with particles, to undo a tick that faults.
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>
       contact_blocks;  ///< Only that of the chosen width is filled.

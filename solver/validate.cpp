@@ -21,6 +21,9 @@ Error validate(const Tuning& t) {
   if (!within(t.sleep_s, 0.0f, 1.0e6f)) return invalid("sleep_s");
   if (!within(t.sleep_speed, 0.0f, kSpeedMax)) return invalid("sleep_speed");
   if (t.continuous > 1) return invalid("continuous");
+  if (t.particle_substeps < 1 || t.particle_substeps > 256) return invalid("particle_substeps");
+  if (t.particle_sweeps < 1 || t.particle_sweeps > 1000) return invalid("particle_sweeps");
+  if (!within(t.particle_damping, 0.0f, 1.0e4f)) return invalid("particle_damping");
   if (!within(t.baumgarte, 0.0f, 2.0f)) return invalid("baumgarte");
   if (!within(t.slop, 0.0f, 1.0f)) return invalid("slop");
   if (!within(t.contact_hertz, 1.0e-3f, 1.0e5f)) return invalid("contact_hertz");
@@ -41,6 +44,9 @@ Error validate(const Limits& limits) {
   if (limits.contacts > kMax) return invalid("limits.contacts");
   if (limits.materials > kMax) return invalid("limits.materials");
   if (limits.registers > kMax) return invalid("limits.registers");
+  if (limits.particles > kMax) return invalid("limits.particles");
+  if (limits.links > kMax) return invalid("limits.links");
+  if (limits.pins > kMax) return invalid("limits.pins");
   return {};
 }
 

@@ -129,13 +129,46 @@ static Error validate_contacts(const WorldState<D>& state) {
 }
 
 template <int D>
+static Error validate_particles(const WorldState<D>& state) {
+  for (std::size_t i = 0; i < state.particles.size(); ++i) {
+    const Particle<D>& particle = state.particles[i];
+    if (particle.kind > 1 || !is_finite(particle)) return corrupt("particle", i);
+    if (particle.kind == 0) continue;
+    const bool sized = within(particle.radius, kSizeMin, kSizeMax) && particle.inverse_mass >= 0.0f;
+    if (!sized || !within(particle.position, kPositionMax) ||
+        particle.material >= state.materials.size())
+      return corrupt("particle", i);
+  }
+  const auto lives = [&](std::uint32_t slot) {
+    return slot < state.particles.size() && state.particles[slot].kind != 0;
+  };
+  for (std::size_t i = 0; i < state.links.size(); ++i) {
+    const Link& link = state.links[i];
+    if (link.kind > 1 || !is_finite(link)) return corrupt("link", i);
+    if (link.kind == 0) continue;
+    if (!lives(link.particle_a) || !lives(link.particle_b) || link.particle_a == link.particle_b)
+      return corrupt("link", i);
+    if (!(link.length >= 0.0f) || !(link.compliance >= 0.0f)) return corrupt("link", i);
+  }
+  for (std::size_t i = 0; i < state.pins.size(); ++i) {
+    const Pin<D>& pin = state.pins[i];
+    if (pin.kind > 1 || !is_finite(pin)) return corrupt("pin", i);
+    if (pin.kind == 0) continue;
+    if (!lives(pin.particle) || pin.body >= state.bodies.size() ||
+        state.bodies[pin.body].kind == BodyKind::kFree)
+      return corrupt("pin", i);
+  }
+  return {};
+}
+
+template <int D>
 static Error validate_header(const WorldState<D>& state) {
   const WorldHeader<D>& header = state.header;
   if (!within(header.gravity, 1.0e4f)) return corrupt("gravity", 0);
   if (!within(header.tick_s, 1.0e-5f, 1.0f)) return corrupt("tick_s", 0);
   if (!validate(header.tuning).ok()) return corrupt("tuning", 0);
   if (!validate(header.limits).ok()) return corrupt("limits", 0);
-  if (header.fault.field > kFaultContacts) return corrupt("fault", 0);
+  if (header.fault.field > kFaultParticle) return corrupt("fault", 0);
   const Limits& limits = header.limits;
   if (state.bodies.size() > limits.bodies) return corrupt("limits.bodies", 0);
   if (state.shapes.size() > limits.shapes) return corrupt("limits.shapes", 0);
@@ -143,6 +176,9 @@ static Error validate_header(const WorldState<D>& state) {
   if (state.contacts.size() > limits.contacts) return corrupt("limits.contacts", 0);
   if (state.materials.size() > limits.materials) return corrupt("limits.materials", 0);
   if (state.registers.size() > limits.registers) return corrupt("limits.registers", 0);
+  if (state.particles.size() > limits.particles) return corrupt("limits.particles", 0);
+  if (state.links.size() > limits.links) return corrupt("limits.links", 0);
+  if (state.pins.size() > limits.pins) return corrupt("limits.pins", 0);
   for (std::size_t i = 0; i < state.materials.size(); ++i)
     if (!validate(state.materials[i], static_cast<int>(i)).ok()) return corrupt("material", i);
   return {};
@@ -155,12 +191,16 @@ Error validate(const WorldState<D>& state) {
   if (const Error error = validate_shapes(state); !error.ok()) return error;
   if (const Error error = validate_joints(state); !error.ok()) return error;
   if (const Error error = validate_contacts(state); !error.ok()) return error;
+  if (const Error error = validate_particles(state); !error.ok()) return error;
   if (!is_free_list(state.free_bodies, state.bodies, BodyKind::kFree))
     return corrupt("free body", 0);
   if (!is_free_list(state.free_shapes, state.shapes, ShapeKind::kFree))
     return corrupt("free shape", 0);
   if (!is_free_list(state.free_joints, state.joints, JointKind::kFree))
     return corrupt("free joint", 0);
+  if (!is_free_list(state.free_particles, state.particles, 0u)) return corrupt("free particle", 0);
+  if (!is_free_list(state.free_links, state.links, 0u)) return corrupt("free link", 0);
+  if (!is_free_list(state.free_pins, state.pins, 0u)) return corrupt("free pin", 0);
   return {};
 }
 

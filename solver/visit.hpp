@@ -121,6 +121,40 @@ constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
   f("upper_impulse", r.upper_impulse);
 }
 
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Particle<D>*) {
+  f("generation", r.generation);
+  f("kind", r.kind);
+  f("material", r.material);
+  f("group", r.group);
+  f("filter.category", r.filter.category);
+  f("filter.mask", r.filter.mask);
+  f("filter.group", r.filter.group);
+  f("position", r.position);
+  f("velocity", r.velocity);
+  f("inverse_mass", r.inverse_mass);
+  f("radius", r.radius);
+}
+
+template <class R, class F>
+constexpr void visit_fields(R& r, F&& f, const Link*) {
+  f("generation", r.generation);
+  f("kind", r.kind);
+  f("particle_a", r.particle_a);
+  f("particle_b", r.particle_b);
+  f("length", r.length);
+  f("compliance", r.compliance);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Pin<D>*) {
+  f("generation", r.generation);
+  f("kind", r.kind);
+  f("particle", r.particle);
+  f("body", r.body);
+  f("anchor", r.anchor);
+}
+
 template <class R, class F>
 constexpr void visit_fields(R& r, F&& f, const Tuning*) {
   f("tuning.substeps", r.substeps);
@@ -146,6 +180,9 @@ constexpr void visit_fields(R& r, F&& f, const Tuning*) {
   f("tuning.sleep_s", r.sleep_s);
   f("tuning.sleep_speed", r.sleep_speed);
   f("tuning.continuous", r.continuous);
+  f("tuning.particle_substeps", r.particle_substeps);
+  f("tuning.particle_sweeps", r.particle_sweeps);
+  f("tuning.particle_damping", r.particle_damping);
 }
 
 template <class R, class F, int D>
@@ -164,6 +201,9 @@ constexpr void visit_fields(R& r, F&& f, const WorldHeader<D>*) {
   f("limits.contacts", r.limits.contacts);
   f("limits.materials", r.limits.materials);
   f("limits.registers", r.limits.registers);
+  f("limits.particles", r.limits.particles);
+  f("limits.links", r.limits.links);
+  f("limits.pins", r.limits.pins);
 }
 
 template <class R, class F>
@@ -183,6 +223,12 @@ void visit_arrays(S& state, F&& f) {
   f("free joint", state.free_joints);
   f("contact", state.contacts);
   f("register", state.registers);
+  f("particle", state.particles);
+  f("free particle", state.free_particles);
+  f("link", state.links);
+  f("free link", state.free_links);
+  f("pin", state.pins);
+  f("free pin", state.free_pins);
 }
 
 template <class T>
@@ -249,6 +295,9 @@ static_assert(kVisitsEverything<Body<2>> && kVisitsEverything<Body<3>>);
 static_assert(kVisitsEverything<Shape<2>> && kVisitsEverything<Shape<3>>);
 static_assert(kVisitsEverything<Contact<2>> && kVisitsEverything<Contact<3>>);
 static_assert(kVisitsEverything<Joint<2>> && kVisitsEverything<Joint<3>>);
+static_assert(kVisitsEverything<Particle<2>> && kVisitsEverything<Particle<3>>);
+static_assert(kVisitsEverything<Link>);
+static_assert(kVisitsEverything<Pin<2>> && kVisitsEverything<Pin<3>>);
 static_assert(kVisitsEverything<WorldHeader<2>> && kVisitsEverything<WorldHeader<3>>);
 
 }  // namespace cycloid::solver

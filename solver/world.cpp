@@ -21,6 +21,8 @@ const char* fault_field_name(std::uint64_t field) {
       return "spin";
     case kFaultContacts:
       return "limits.contacts";
+    case kFaultParticle:
+      return "particle";
     default:
       return "unknown";
   }

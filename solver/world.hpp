@@ -90,7 +90,7 @@ class World {
   Error step();
 
   Result<BodyId> create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> shapes);
-  /// Also removes the joints of the body; its contacts end with the next step.
+  /// Also removes the joints and pins of the body; its contacts end with the next step.
   Error destroy_body(BodyId id);
   Result<JointId> create_joint(const JointDef<D>& def);
   Error destroy_joint(JointId id);
@@ -98,6 +98,14 @@ class World {
   /// in every process, before the first joint, restore or step; a step with a kind that is missing
   /// returns kInvalid "user_kind" and changes nothing.
   void register_constraint(std::uint32_t user_kind, RowsFunction<D> function);
+
+  Result<ParticleId> create_particle(const ParticleDef<D>& def);
+  /// Also removes its links and pins.
+  Error destroy_particle(ParticleId id);
+  Result<LinkId> create_link(const LinkDef& def);
+  Error destroy_link(LinkId id);
+  Result<PinId> create_pin(const PinDef<D>& def);
+  Error destroy_pin(PinId id);
 
   Error apply_force(BodyId id, const Vec<D>& force_n);  ///< At the centre of mass.
   Error apply_torque(BodyId id, const Spin<D>& torque_n_m);
@@ -194,6 +202,6 @@ std::vector<Difference> differences(const WorldState<D>& a, const WorldState<D>&
 
 /// Names, for a digest and a handshake, the arithmetic of this solver: equal versions give equal
 /// bits. Raised by every commit that re-mints goldens.
-inline constexpr std::uint32_t kSolverVersion = 5;
+inline constexpr std::uint32_t kSolverVersion = 6;
 
 }  // namespace cycloid::solver

@@ -5,6 +5,7 @@
 #include "solver/events.hpp"
 #include "solver/mass.hpp"
 #include "solver/shapes.hpp"
+#include "solver/slots.hpp"
 #include "solver/step_scratch.hpp"
 #include "solver/validate.hpp"
 #include "solver/wake.hpp"
@@ -12,24 +13,6 @@
 #include "solver/world.hpp"
 
 namespace cycloid::solver {
-
-/// The slot that the next record takes: the last freed, else a new one. Fails at the limit.
-template <class Record>
-static bool has_room(const std::vector<Record>& slots, const std::vector<std::uint32_t>& free,
-                     std::size_t wanted, std::uint32_t limit) {
-  return slots.size() - free.size() + wanted <= limit;
-}
-
-template <class Record>
-static std::uint32_t take_slot(std::vector<Record>& slots, std::vector<std::uint32_t>& free) {
-  if (free.empty()) {
-    slots.push_back(Record{});
-    return static_cast<std::uint32_t>(slots.size() - 1);
-  }
-  const std::uint32_t index = free.back();
-  free.pop_back();
-  return index;
-}
 
 template <int D>
 static bool is_movable(BodyKind kind) {
@@ -150,6 +133,9 @@ Error World<D>::destroy_body(BodyId id) {
     if (joint.body_a == id.index || joint.body_b == id.index)
       if (const Error error = destroy_joint({i, joint.generation}); !error.ok()) return error;
   }
+  for (std::uint32_t i = 0; i < state_.pins.size(); ++i)
+    if (state_.pins[i].kind != 0 && state_.pins[i].body == id.index)
+      free_slot(i, state_.pins, state_.free_pins);
   const auto is_of_body = [&](const Contact<D>& contact) {
     return state_.shapes[contact.shape_a].body == id.index ||
            state_.shapes[contact.shape_b].body == id.index;

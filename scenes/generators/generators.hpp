@@ -30,6 +30,10 @@ Scene overlap(int base);
 /// The same small scene under each method that is not the default: "method-pgs" and so on.
 std::vector<Scene> method_scenes();
 
+/// A cloth of columns x columns particles that falls over a ball, and a rope; in the plane a net.
+Scene cloth(int columns);
+Scene cloth_3d(int columns);
+
 // Parts that several of them use.
 
 SceneShape box_shape(float half_x, float half_y);

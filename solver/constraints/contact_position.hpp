@@ -119,8 +119,9 @@ void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
   scatter_pose(b, block.mass_b, block.body_b, motions);
 }
 
-/// XPBD's velocity pass: dynamic friction of the points that pushed, |impulse| <= friction lambda /
-/// h.
+/// XPBD's velocity pass, for points that pushed: what the projection left of normal velocity is
+/// taken away (what bounces has bounced before), then rolling resistance and dynamic friction,
+/// whose impulse is at most friction lambda / h. Source: Mueller et al. 2020, section 3.6.
 template <int D, int W>
 void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
                            std::span<Motion<D>> motions) {
@@ -130,10 +131,16 @@ void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& bl
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
     point.normal_impulse = point.position_impulse * L(context.inverse_h);
+    const Arms<D, L> arms = arms_of(block, point, a, b);
+    const L speed = relative_speed(block.normal, arms, a, b);
+    const L stop = select(point.position_impulse > L(0.0f), -point.normal_mass * speed, L(0.0f));
+    apply_pair(stop * block.normal, arms, block, a, b);
     for (L& impulse : point.tangent_impulse) impulse = L(0.0f);
     if (block.rubs) solve_friction(context, block, point, a, b);
     point.position_impulse = L(0.0f);
   }
+  for (L& impulse : block.rolling_impulse.v) impulse = L(0.0f);
+  if (block.rolls) solve_rolling(block, a, b);
   scatter(a, block.mass_a, block.body_a, motions);
   scatter(b, block.mass_b, block.body_b, motions);
 }

@@ -2,12 +2,6 @@
 
 namespace cycloid::solver {
 
-template <int D>
-static float effective_mass(const JointRow<D>& joint, const Row<D>& row) {
-  const float k = row_coupling(joint, row, row);
-  return k > 0.0f ? 1.0f / k : 0.0f;
-}
-
 /// K of the equalities [begin, end), factored.
 template <int D>
 static void factor_block(int begin, int end, JointRow<D>& joint,
@@ -19,6 +13,25 @@ static void factor_block(int begin, int end, JointRow<D>& joint,
       k[i - begin][j - begin] = row_coupling(joint, joint.rows.rows[static_cast<std::size_t>(i)],
                                              joint.rows.rows[static_cast<std::size_t>(j)]);
   block.factor(k, end - begin);
+}
+
+/// K_ll - K_le K_ee^-1 K_el, inverted, and K_ee^-1 K_el: row l with the equalities e held.
+template <int D>
+static typename JointRow<D>::Held hold_block(const JointRow<D>& joint, const Row<D>& row) {
+  typename JointRow<D>::Held held{};
+  const float k = row_coupling(joint, row, row);
+  const int count = joint.rows.split;
+  float across[JointRow<D>::kRows];
+  for (int i = 0; i < count; ++i) {
+    across[i] = row_coupling(joint, joint.rows.rows[static_cast<std::size_t>(i)], row);
+    held.reaction[i] = across[i];
+  }
+  joint.blocks[0].solve(held.reaction, count);
+  float left = k;
+  for (int i = 0; i < count; ++i) left -= across[i] * held.reaction[i];
+  // A row that the equalities decide already has nothing to give.
+  held.mass = left > 1.0e-6f * k ? 1.0f / left : 0.0f;
+  return held;
 }
 
 template <int D>
@@ -35,9 +48,9 @@ void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a,
   row.rows_function(frame, row.rows);
   factor_block(0, row.rows.split, row, row.blocks[0]);
   factor_block(row.rows.split, row.rows.count, row, row.blocks[1]);
-  row.axis_mass = row.rows.has_axis ? effective_mass(row, row.rows.axis) : 0.0f;
-  row.motor_mass =
-      row.rows.has_motor_axis ? effective_mass(row, row.rows.motor_axis) : row.axis_mass;
+  if (row.rows.has_axis) row.axis = hold_block(row, row.rows.axis);
+  if (row.rows.has_axis)
+    row.motor = row.rows.has_motor_axis ? hold_block(row, row.rows.motor_axis) : row.axis;
 }
 
 template void evaluate_rows(const WorldState<2>&, float, const Motion<2>&, const Motion<2>&,

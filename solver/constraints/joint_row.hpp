@@ -24,8 +24,15 @@ struct JointRow {
 
   JointRows<D> rows;
   BlockFactor<kRows> blocks[2];  ///< Of the equalities before `rows.split`, and from it on.
-  float axis_mass;               ///< K^-1 of the coordinate and of the motor's row.
-  float motor_mass;
+  /// Of the coordinate and of the motor's row, with the first block of equalities held: what an
+  /// impulse along the row asks of them goes with it, so that a limit at the end of a long arm is
+  /// met at once.
+  struct Held {
+    float mass;
+    float reaction[kRows];
+  };
+  Held axis;
+  Held motor;
 
   Softness spring_of[2];  ///< Of the blocks; meant where is_spring.
   bool is_spring[2];
@@ -65,6 +72,18 @@ void apply_row(const JointRow<D>& joint, const Row<D>& row, float impulse, Motio
   a.spin += joint.mass_a.inverse_inertia * (impulse * row.angular_a);
   b.velocity += (joint.mass_b.inverse_mass * impulse) * row.linear_b;
   b.spin += joint.mass_b.inverse_inertia * (impulse * row.angular_b);
+}
+
+/// An impulse along a row that leaves the first block of equalities as satisfied as it was.
+template <int D>
+void apply_held(JointRow<D>& joint, const Row<D>& row, const typename JointRow<D>::Held& held,
+                float impulse, Motion<D>& a, Motion<D>& b) {
+  apply_row(joint, row, impulse, a, b);
+  for (int i = 0; i < joint.rows.split; ++i) {
+    const float change = -held.reaction[i] * impulse;
+    apply_row(joint, joint.rows.rows[static_cast<std::size_t>(i)], change, a, b);
+    joint.impulse[i] += change;
+  }
 }
 
 /// J_i M^-1 J_j^T.

@@ -60,11 +60,11 @@ template <int D>
 void solve_drives(JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
   if (row.spring_enabled) {
     const float error = row.rows.axis.error - row.spring_rest;
-    const float change = -row.axis_mass * row.spring.mass_scale *
+    const float change = -row.axis.mass * row.spring.mass_scale *
                              (row_speed(row.rows.axis, a, b) + row.spring.bias_rate * error) -
                          row.spring.impulse_scale * row.spring_impulse;
     row.spring_impulse += change;
-    apply_row(row, row.rows.axis, change, a, b);
+    apply_held(row, row.rows.axis, row.axis, change, a, b);
   }
   if (!row.motor_enabled) return;
   const Row<D>& axis = row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis;
@@ -74,10 +74,10 @@ void solve_drives(JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
                          ? softness.bias_rate * (axis.error - row.spring_rest) - row.target_rate
                          : -row.motor_speed;
   const float wanted = row.motor_impulse -
-                       row.motor_mass * softness.mass_scale * (row_speed(axis, a, b) + bias) -
+                       row.motor.mass * softness.mass_scale * (row_speed(axis, a, b) + bias) -
                        softness.impulse_scale * row.motor_impulse;
   const float accumulated = clamp(wanted, -bound, bound);
-  apply_row(row, axis, accumulated - row.motor_impulse, a, b);
+  apply_held(row, axis, row.motor, accumulated - row.motor_impulse, a, b);
   row.motor_impulse = accumulated;
 }
 
@@ -95,9 +95,9 @@ void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, f
   }
   const float speed = sign * row_speed(row.rows.axis, a, b);
   const float change =
-      -row.axis_mass * softness.mass_scale * (speed + bias) - softness.impulse_scale * impulse;
+      -row.axis.mass * softness.mass_scale * (speed + bias) - softness.impulse_scale * impulse;
   const float accumulated = max(impulse + change, 0.0f);
-  apply_row(row, row.rows.axis, sign * (accumulated - impulse), a, b);
+  apply_held(row, row.rows.axis, row.axis, sign * (accumulated - impulse), a, b);
   impulse = accumulated;
 }
 
@@ -138,8 +138,13 @@ void correct_joint(const StepContext<D>& context, JointRow<D>& row, Motion<D>& a
   if (row.rows.has_axis && row.limit_enabled) {
     const float coordinate = row.rows.axis.error;
     const float beyond = min(coordinate - row.lower, 0.0f) + max(coordinate - row.upper, 0.0f);
-    if (beyond != 0.0f)
-      move_by_row(row, row.rows.axis, -row.axis_mass * clamp(beyond, -most, most), a, b);
+    const float lambda = -row.axis.mass * clamp(beyond, -most, most);
+    if (beyond != 0.0f) {
+      move_by_row(row, row.rows.axis, lambda, a, b);
+      for (int i = 0; i < row.rows.split; ++i)
+        move_by_row(row, row.rows.rows[static_cast<std::size_t>(i)], -row.axis.reaction[i] * lambda,
+                    a, b);
+    }
   }
   for (int index = 0; index < 2; ++index) {
     const int begin = index == 0 ? 0 : row.rows.split;

@@ -104,19 +104,16 @@ Row<D> translation_row(const JointFrame<D>& frame, const Vec<D>& direction) {
   return row;
 }
 
-/// C = anchor_b - anchor_a along the world axes: D rows.
-///   J_i = (-e_i, -r_a x e_i, e_i, r_b x e_i)
+/// C = anchor_b - anchor_a along the axes of body a: D rows. Because the axes turn with a, both
+/// impulses of a row act at anchor b, and angular momentum is kept to rounding whatever the error;
+/// along axes of the world they would act |C| apart.
 template <int D>
 void append_point_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
   for (int i = 0; i < D; ++i) {
     Vec<D> e = Vec<D>::zero();
     e[i] = 1.0f;
-    Row<D>& row = rows.rows[static_cast<std::size_t>(rows.count++)];
-    row.linear_a = -e;
-    row.angular_a = -moment(frame.r_a, e);
-    row.linear_b = e;
-    row.angular_b = moment(frame.r_b, e);
-    row.error = frame.offset[i];
+    rows.rows[static_cast<std::size_t>(rows.count++)] =
+        translation_row(frame, rotate(frame.rotation_a, e));
   }
 }
 

@@ -1,54 +1,57 @@
-#include "solver/collision/collide.hpp"
-#include "solver/queries/visit_shapes.hpp"
+#include "solver/queries/candidates.hpp"
+#include "solver/queries/casting.hpp"
 
 namespace cycloid::solver {
 
-/// The deepest point of a manifold as a hit on shape a, whose pose is `pose`.
+static void fill_normals(Shape<2>& shape) {
+  if (shape.vertex_count < 2) return;
+  for (std::uint32_t i = 0; i < shape.vertex_count; ++i) {
+    const std::uint32_t next = i + 1 < shape.vertex_count ? i + 1 : 0;
+    const Vec<2> edge = shape.vertices[next] - shape.vertices[i];
+    shape.normals[i] = normalized_or(Vec<2>{{edge[1], -edge[0]}}, Vec<2>{{0.0f, 1.0f}});
+  }
+}
+/// Space has only points as yet.
+static void fill_normals(Shape<3>&) {}
+
 template <int D>
-static QueryHit<D> deepest(const Shape<D>& shape, const Body<D>& body,
-                           const Manifold<D>& manifold) {
-  const ManifoldPoint<D>* point = &manifold.points[0];
-  for (std::uint32_t i = 1; i < manifold.point_count; ++i)
-    if (manifold.points[i].separation < point->separation) point = &manifold.points[i];
-  QueryHit<D> hit = hit_of(shape, body);
-  hit.normal = manifold.normal;
-  hit.separation = point->separation;
-  hit.point = body.position + point->anchor_a - (0.5f * point->separation) * manifold.normal;
-  return hit;
+Shape<D> shape_of(const Probe<D>& probe) {
+  Shape<D> shape{};
+  shape.kind = ShapeKind::kPolygon;
+  if (probe.count == 1) shape.kind = ShapeKind::kBall;
+  if (probe.count == 2) shape.kind = ShapeKind::kCapsule;
+  shape.vertex_count = probe.count;
+  shape.radius = probe.radius;
+  shape.vertices = probe.points;
+  fill_normals(shape);
+  return shape;
 }
 
 template <int D>
 std::vector<QueryHit<D>> overlap(const WorldState<D>& state, const Probe<D>& probe,
                                  const Pose<D>& pose, float margin, const QueryFilter& filter) {
   std::vector<QueryHit<D>> hits;
-  const Shape<D> placed = shape_of(probe);
-  visit_shapes(state, bounds_of(placed, pose, margin), filter,
-               [&](std::uint32_t, const Shape<D>& shape, const Body<D>& body) {
-                 const Manifold<D> manifold = collide(shape, pose_of(body), placed, pose, margin);
-                 if (manifold.point_count > 0) hits.push_back(deepest(shape, body, manifold));
-               });
+  const Core<D> core = core_of(shape_of(probe), pose.rotation, Vec<D>::zero());
+  Core<D> reach = core;
+  reach.radius += max(margin, 0.0f);
+  const auto test = [&](const Shape<D>& shape, const Pose<D>& relative) {
+    const Core<D> other = core_of(shape, relative.rotation, relative.position);
+    const Separation<D> between = separation_of(other, core);
+    if (!(between.distance < margin)) return;
+    // The free side, whatever neighbours a segment has.
+    if (other.one_sided() && dot(between.normal, other.normals[0]) < 0.0f) return;
+    hits.push_back(hit_of(state, shape, pose.position, between.point_a, between.normal));
+    hits.back().separation = between.distance;
+  };
+  for_each_candidate(state, pose.position, swept_bounds(reach, Vec<D>::zero()), filter, test);
   return hits;
 }
 
-template <int D>
-std::optional<QueryHit<D>> closest_point(const WorldState<D>& state, const Vec<D>& point,
-                                         float distance_max, const QueryFilter& filter) {
-  Probe<D> probe;
-  probe.points[0] = Vec<D>::zero();
-  const Pose<D> pose{point, identity_rotation<D>()};
-  std::optional<QueryHit<D>> nearest;
-  for (const QueryHit<D>& hit : overlap(state, probe, pose, distance_max, filter))
-    if (!nearest || hit.separation < nearest->separation) nearest = hit;
-  return nearest;
-}
-
+template Shape<2> shape_of(const Probe<2>&);
+template Shape<3> shape_of(const Probe<3>&);
 template std::vector<QueryHit<2>> overlap(const WorldState<2>&, const Probe<2>&, const Pose<2>&,
                                           float, const QueryFilter&);
 template std::vector<QueryHit<3>> overlap(const WorldState<3>&, const Probe<3>&, const Pose<3>&,
                                           float, const QueryFilter&);
-template std::optional<QueryHit<2>> closest_point(const WorldState<2>&, const Vec<2>&, float,
-                                                  const QueryFilter&);
-template std::optional<QueryHit<3>> closest_point(const WorldState<3>&, const Vec<3>&, float,
-                                                  const QueryFilter&);
 
 }  // namespace cycloid::solver

@@ -10,69 +10,87 @@
 
 namespace cycloid::solver {
 
-/// Questions about a state that change nothing in it. Answers are in the order of the shapes'
-/// slots, which is that of their creation; of equals the lowest slot comes first. They depend on
-/// the state alone, so every peer gets the same bits. Cost: a test of bounds per shape.
-
-/// Which shapes a query meets: as if it were a shape with this filter. `ignore` is left out.
+/// What a query looks at. A shape is met where (shape.category & filter.mask) and
+/// (filter.category & shape.mask); the rule of groups is that of Filter.
 struct QueryFilter {
   Filter filter;
-  BodyId ignore;  ///< index kNone: nobody.
+  BodyId ignore;  ///< A body that is not there for the query; index kNone: nobody.
 };
 
 /// One shape met by a query.
 template <int D>
 struct QueryHit {
   BodyId body;
-  std::uint32_t shape = 0;  ///< Index within the body.
-  Vec<D> point;             ///< On the surface of the shape met, world, m.
+  std::uint32_t shape = 0;  ///< Of the shape within its body: Shape::ordinal.
+  Vec<D> point;             ///< World, m, on the surface of the shape met.
   Vec<D> normal;            ///< Unit, outwards from the shape met.
-  float fraction = 0.0f;    ///< Of the cast's way, 0 to 1; 0 for other queries.
-  float separation = 0.0f;  ///< m, negative inside; 0 for ray casts.
+  float fraction = 0.0f;    ///< Of the way of a cast, 0 to 1; other queries: 0.
+  float separation = 0.0f;  ///< m, negative inside; ray casts: 0.
 };
 
-/// A convex shape that is not in the world: 1 to Dim<D>::kVertices points, rounded by the radius.
-/// One point is a ball, two a capsule, more a counter-clockwise polygon.
+/// A convex probe: a hull of 1 to Dim<D>::kVertices points rounded by `radius` [m]: a ball is one
+/// point, a capsule two, a polygon 3 to 8 in counter-clockwise order and convex.
 template <int D>
 struct Probe {
   std::uint32_t count = 1;
-  float radius = 0.0f;  ///< m, >= 0.
-  std::array<Vec<D>, Dim<D>::kVertices> points{};
+  float radius = 0.0f;
+  std::array<Vec<D>, Dim<D>::kVertices> points{};  ///< Frame of the probe's pose, m.
 };
 
-/// The probe as a shape record, as collide() takes it.
+/// The probe as a shape: kind by its number of points, edge normals filled, default filter. It
+/// belongs to no body; its pose takes the place of a body's centre of mass.
+/// @pre as in Probe; neighbouring points differ.
 template <int D>
 Shape<D> shape_of(const Probe<D>& probe);
 
-/// Every shape on the way from `from` to `to`. A ray that starts inside a shape meets it at
-/// fraction 0 with the normal against the ray; chain edges are met from their free side only.
+// What all queries share: world frame, SI units; nothing is changed; the result is a pure function
+// of the arguments. A segment of a chain is met from its free side only, and where it continues
+// into a neighbour only with normals between the two segments', so that nothing stumbles over the
+// joints of a smooth chain. Positions are taken relative to the query's own, so precision does not
+// depend on where in the world it lies. @pre all arguments are finite.
+
+/// Every shape that the straight way `from` to `to` enters, in the order of shape slots: where it
+/// enters first. A ray that starts inside of a shape meets it at fraction 0 with point `from` and
+/// the normal against the ray (without length: away from the nearest surface). Tangents do not hit.
 template <int D>
 std::vector<QueryHit<D>> ray_cast(const WorldState<D>& state, const Vec<D>& from, const Vec<D>& to,
                                   const QueryFilter& filter);
-/// The first of them; nothing where the way is free.
+
+/// The hit of `ray_cast` with the smallest fraction; of equal ones the lowest shape slot. Nothing
+/// where no shape is hit.
 template <int D>
 std::optional<QueryHit<D>> ray_cast_first(const WorldState<D>& state, const Vec<D>& from,
                                           const Vec<D>& to, const QueryFilter& filter);
 
-/// Every shape closer than `margin` [m] to the probe, each with its deepest point. The normal
-/// points to the probe.
+/// Every shape closer than `margin` [m] to the probe at `pose`, in the order of shape slots. One
+/// hit per shape: its point deepest in, or nearest to, the probe; normal towards the probe. Of a
+/// chain every segment that close on its free side counts.
 template <int D>
 std::vector<QueryHit<D>> overlap(const WorldState<D>& state, const Probe<D>& probe,
                                  const Pose<D>& pose, float margin, const QueryFilter& filter);
 
-/// Every shape that the probe meets on its way along `translation`, without turning. A probe that
-/// overlaps a shape at the start meets it at 0 where it moves deeper, and not where it leaves.
+/// Every shape that the probe meets when it moves from `pose` along `translation` [m] without
+/// turning, in the order of shape slots, at the fraction of first contact. A shape that the probe
+/// overlaps at the start is met at fraction 0, with that separation, if the way leads deeper in
+/// (dot(normal, translation) < 0), and otherwise not at all. Exact up to rounding: no iteration.
+///
+/// The first contact is where the ray along `translation` enters the rounded Minkowski difference
+/// of the two. Source: van den Bergen, "Ray Casting against General Convex Objects" (2004).
 template <int D>
 std::vector<QueryHit<D>> shape_cast(const WorldState<D>& state, const Probe<D>& probe,
                                     const Pose<D>& pose, const Vec<D>& translation,
                                     const QueryFilter& filter);
+
+/// The hit of `shape_cast` with the smallest fraction; of equal ones the lowest shape slot.
+/// Nothing where the way is free.
 template <int D>
 std::optional<QueryHit<D>> shape_cast_first(const WorldState<D>& state, const Probe<D>& probe,
                                             const Pose<D>& pose, const Vec<D>& translation,
                                             const QueryFilter& filter);
 
-/// The nearest point of any surface within `distance_max` [m]; `separation` is the distance,
-/// negative for a point inside. Nothing where nothing is so near.
+/// The surface point nearest to `point`, of the shapes whose surface is at most `distance_max` [m]
+/// away from inside or outside; of equal distances the lowest shape slot. Chains count on their
+/// free side only. Nothing where no surface is that near.
 template <int D>
 std::optional<QueryHit<D>> closest_point(const WorldState<D>& state, const Vec<D>& point,
                                          float distance_max, const QueryFilter& filter);

@@ -1,31 +1,151 @@
-#include "solver/queries/time_of_impact.hpp"
-#include "solver/queries/visit_shapes.hpp"
+#include "solver/queries/candidates.hpp"
+#include "solver/queries/casting.hpp"
 
 namespace cycloid::solver {
 
-/// A cast ends this close to what it met, m; positions carry a hundredth of it at 10 m.
-static constexpr float kTolerance = 1.0e-4f;
-
-/// Outward normals of a probe's edges; in space a probe is a ball.
-static void set_normals(Shape<2>& shape) {
-  for (std::uint32_t i = 0; i < shape.vertex_count; ++i) {
-    const Vec<2> edge = shape.vertices[(i + 1) % shape.vertex_count] - shape.vertices[i];
-    shape.normals[i] = normalized_or(Vec<2>{{edge[1], -edge[0]}}, Vec<2>{{0.0f, 1.0f}});
-  }
-}
-static void set_normals(Shape<3>&) {}
+/// A cast as the ray from the origin along `translation` against the Minkowski difference of the
+/// cores, rounded by both radii: it is where the ray first enters one of its faces or corners.
+template <int D>
+struct Way {
+  Vec<D> translation;
+  Vec<D> direction;
+  float length;
+  float radius;  ///< Of both.
+};
 
 template <int D>
-Shape<D> shape_of(const Probe<D>& probe) {
-  Shape<D> shape{};
-  shape.kind = probe.count == 1   ? ShapeKind::kBall
-               : probe.count == 2 ? ShapeKind::kCapsule
-                                  : ShapeKind::kPolygon;
-  shape.vertex_count = probe.count;
-  shape.radius = probe.radius;
-  shape.vertices = probe.points;
-  if (probe.count > 1) set_normals(shape);
-  return shape;
+static void offer(const Core<D>& core, float fraction, const Vec<D>& normal, const Vec<D>& point,
+                  Entry<D>& best) {
+  if (!(fraction <= 1.0f) || (best.hit && fraction >= best.fraction)) return;
+  if (!allows(core, normal)) return;
+  best = {true, fraction, normal, point};
+}
+
+/// Starts that rounding puts this far inside of a surface they only touch still enter it, m.
+static constexpr float kTouch = 1.0e-5f;
+
+/// The discs around the differences of vertices.
+template <int D>
+static void enter_corners(const Core<D>& core, const Core<D>& probe, const Way<D>& way,
+                          Entry<D>& best) {
+  if (way.radius <= 0.0f) return;
+  for (std::uint32_t i = 0; i < core.count; ++i)
+    for (std::uint32_t j = 0; j < probe.count; ++j) {
+      // Split along the way, so that a long way to a small ball keeps its digits.
+      const Vec<D> start = probe.vertices[j] - core.vertices[i];
+      const float along = dot(start, way.direction);
+      const Vec<D> aside = start - along * way.direction;
+      const float square = way.radius * way.radius - dot(aside, aside);
+      if (square <= 0.0f || along >= 0.0f) continue;
+      const float half = sqrt(square);
+      const float distance = -along - half;
+      if (distance < -kTouch) continue;
+      const Vec<D> normal =
+          normalized_or((1.0f / way.radius) * (aside - half * way.direction), -way.direction);
+      offer(core, max(distance, 0.0f) / way.length, normal, core.vertices[i] + core.radius * normal,
+            best);
+    }
+}
+
+/// Whether the ray from the origin enters the edge from `from` to `to`, which has `normal` outside,
+/// pushed out by the radius. The signs of shared ends are computed alike for both their edges, so
+/// that no ray slips between two.
+static bool enter_face(const Vec<2>& from, const Vec<2>& to, const Vec<2>& normal,
+                       const Way<2>& way, float& fraction) {
+  const float approach = -dot(normal, way.translation);
+  if (approach <= 0.0f) return false;
+  const Vec<2> shift = way.radius * normal;
+  if (cross(way.direction, from + shift) < 0.0f || cross(way.direction, to + shift) > 0.0f)
+    return false;
+  const float height = -dot(normal, from) - way.radius;
+  if (height < -kTouch || height > approach) return false;
+  fraction = max(height, 0.0f) / approach;
+  return true;
+}
+
+static void enter_faces(const Core<2>& core, const Core<2>& probe, const Way<2>& way,
+                        Entry<2>& best) {
+  float fraction = 0.0f;
+  for (std::uint32_t i = 0; i < core.faces(); ++i)
+    for (std::uint32_t j = 0; j < probe.count; ++j) {
+      const Vec<2> from = core.vertices[i] - probe.vertices[j];
+      const Vec<2> to = core.vertices[core.next(i)] - probe.vertices[j];
+      if (!enter_face(from, to, core.normals[i], way, fraction)) continue;
+      offer(core, fraction, core.normals[i],
+            probe.vertices[j] + fraction * way.translation - probe.radius * core.normals[i], best);
+    }
+  for (std::uint32_t j = 0; j < probe.faces(); ++j)
+    for (std::uint32_t i = 0; i < core.count; ++i) {
+      const Vec<2> from = core.vertices[i] - probe.vertices[j];
+      const Vec<2> to = core.vertices[i] - probe.vertices[probe.next(j)];
+      const Vec<2> normal = -probe.normals[j];
+      if (!enter_face(from, to, normal, way, fraction)) continue;
+      offer(core, fraction, normal, core.vertices[i] + core.radius * normal, best);
+    }
+}
+/// Space has no faces as yet.
+static void enter_faces(const Core<3>&, const Core<3>&, const Way<3>&, Entry<3>&) {}
+
+/// Whether the line of the way passes the core, or only touches its outline. The ends of a
+/// segment count, because a neighbour may continue there.
+static bool passes(const Core<2>& core, const Core<2>& probe, const Way<2>& way) {
+  float lowest = 3.0e38f;
+  float highest = -3.0e38f;
+  for (std::uint32_t i = 0; i < core.count; ++i)
+    for (std::uint32_t j = 0; j < probe.count; ++j) {
+      const float aside = cross(way.direction, core.vertices[i] - probe.vertices[j]);
+      lowest = min(lowest, aside);
+      highest = max(highest, aside);
+    }
+  if (core.one_sided()) return lowest <= way.radius && highest >= -way.radius;
+  return lowest < way.radius && highest > -way.radius;
+}
+static bool passes(const Core<3>&, const Core<3>&, const Way<3>&) {
+  return true;
+}
+
+template <int D>
+static Entry<D> enter_half_space(const Core<D>& plane, const Core<D>& probe,
+                                 const Vec<D>& translation) {
+  const Separation<D> start = separation_of(plane, probe);
+  const float approach = -dot(plane.normal, translation);
+  Entry<D> entry{};
+  if (approach <= 0.0f || start.distance > approach) return entry;
+  entry.hit = true;
+  entry.fraction = max(start.distance, 0.0f) / approach;
+  entry.normal = plane.normal;
+  entry.point = start.point_b + entry.fraction * translation;
+  return entry;
+}
+
+template <int D>
+Entry<D> enter(const Core<D>& core, const Core<D>& probe, const Vec<D>& translation) {
+  if (core.half_space()) return enter_half_space(core, probe, translation);
+  Entry<D> best{};
+  const float way_length = length(translation);
+  if (way_length <= 1.0e-12f) return best;
+  const Way<D> way{translation, (1.0f / way_length) * translation, way_length,
+                   core.radius + probe.radius};
+  if (!passes(core, probe, way)) return best;
+  enter_faces(core, probe, way, best);
+  enter_corners(core, probe, way, best);
+  return best;
+}
+
+template <int D>
+Bounds<D> swept_bounds(const Core<D>& probe, const Vec<D>& translation) {
+  Bounds<D> bounds{probe.vertices[0], probe.vertices[0]};
+  for (std::uint32_t i = 0; i < probe.count; ++i)
+    bounds = merged(bounds, {probe.vertices[i], probe.vertices[i]});
+  bounds = merged(bounds, {bounds.lower + translation, bounds.upper + translation});
+  float extent = 0.0f;
+  for (int i = 0; i < D; ++i) extent = max(extent, max(abs(bounds.lower[i]), abs(bounds.upper[i])));
+  const float room = probe.radius + bounds_slack(extent);
+  for (int i = 0; i < D; ++i) {
+    bounds.lower[i] -= room;
+    bounds.upper[i] += room;
+  }
+  return bounds;
 }
 
 template <int D>
@@ -33,21 +153,22 @@ std::vector<QueryHit<D>> shape_cast(const WorldState<D>& state, const Probe<D>& 
                                     const Pose<D>& pose, const Vec<D>& translation,
                                     const QueryFilter& filter) {
   std::vector<QueryHit<D>> hits;
-  const Shape<D> moving = shape_of(probe);
-  const BodySweep<D> way = {pose, translation, Spin<D>::zero()};
-  visit_shapes(state, way_bounds(bounds_of(moving, pose, kTolerance), translation), filter,
-               [&](std::uint32_t, const Shape<D>& shape, const Body<D>& body) {
-                 const BodySweep<D> still = {pose_of(body), Vec<D>::zero(), Spin<D>::zero()};
-                 const Impact<D> impact =
-                     time_of_impact(shape, still, moving, way, 0.0f, kTolerance);
-                 if (!impact.hit) return;
-                 QueryHit<D> hit = hit_of(shape, body);
-                 hit.fraction = impact.fraction;
-                 hit.point = impact.point;
-                 hit.normal = impact.normal;
-                 hit.separation = impact.separation;
-                 hits.push_back(hit);
-               });
+  const Core<D> moving = core_of(shape_of(probe), pose.rotation, Vec<D>::zero());
+  const auto cast = [&](const Shape<D>& shape, const Pose<D>& relative) {
+    const Core<D> core = core_of(shape, relative.rotation, relative.position);
+    const Separation<D> start = separation_of(core, moving);
+    if (start.distance <= 0.0f && allows(core, start.normal)) {
+      if (!(dot(start.normal, translation) < 0.0f)) return;
+      hits.push_back(hit_of(state, shape, pose.position, start.point_a, start.normal));
+      hits.back().separation = start.distance;
+      return;
+    }
+    const Entry<D> entry = enter(core, moving, translation);
+    if (!entry.hit) return;
+    hits.push_back(hit_of(state, shape, pose.position, entry.point, entry.normal));
+    hits.back().fraction = entry.fraction;
+  };
+  for_each_candidate(state, pose.position, swept_bounds(moving, translation), filter, cast);
   return hits;
 }
 
@@ -55,11 +176,13 @@ template <int D>
 std::optional<QueryHit<D>> shape_cast_first(const WorldState<D>& state, const Probe<D>& probe,
                                             const Pose<D>& pose, const Vec<D>& translation,
                                             const QueryFilter& filter) {
-  return first_of(shape_cast(state, probe, pose, translation, filter));
+  return earliest(shape_cast(state, probe, pose, translation, filter));
 }
 
-template Shape<2> shape_of(const Probe<2>&);
-template Shape<3> shape_of(const Probe<3>&);
+template Entry<2> enter(const Core<2>&, const Core<2>&, const Vec<2>&);
+template Entry<3> enter(const Core<3>&, const Core<3>&, const Vec<3>&);
+template Bounds<2> swept_bounds(const Core<2>&, const Vec<2>&);
+template Bounds<3> swept_bounds(const Core<3>&, const Vec<3>&);
 template std::vector<QueryHit<2>> shape_cast(const WorldState<2>&, const Probe<2>&, const Pose<2>&,
                                              const Vec<2>&, const QueryFilter&);
 template std::vector<QueryHit<3>> shape_cast(const WorldState<3>&, const Probe<3>&, const Pose<3>&,

@@ -5,38 +5,45 @@
 
 namespace cycloid::solver {
 
-/// A body's way: the centre of mass moves straight, the rotation turns at a constant rate.
+/// A body's way through a tick: the centre of mass moves straight, the rotation turns by a
+/// constant spin.
 template <int D>
 struct BodySweep {
-  Pose<D> start;
-  Vec<D> translation = Vec<D>::zero();  ///< m, of the whole way.
-  Spin<D> turn = Spin<D>::zero();       ///< rad, of the whole way.
+  Pose<D> start;       ///< World, of the centre of mass.
+  Vec<D> translation;  ///< m, whole way.
+  Spin<D> turn;        ///< rad, whole way; world axes.
 };
 
+/// The pose at `fraction` (0 to 1) of the way; at 0 exactly `start`.
 template <int D>
 Pose<D> pose_at(const BodySweep<D>& sweep, float fraction);
 
-/// How two shapes meet on their ways.
-template <int D>
+/// What time_of_impact found; without a hit `fraction` is 1.
 struct Impact {
   bool hit = false;
-  float fraction = 1.0f;           ///< Of both ways, 0 to 1.
-  Vec<D> normal = Vec<D>::zero();  ///< From a to b, at the impact.
-  Vec<D> point = Vec<D>::zero();   ///< On the surface of a, world, m.
-  float separation = 0.0f;         ///< m, at the impact.
+  float fraction = 1.0f;
 };
 
-/// The first fraction at which the shapes are `target` [m] apart, within `tolerance`: never later
-/// than the true one. Shapes that are closer than that at the start meet at 0 if they approach
-/// along their normal, and otherwise not at all. Chain edges are met from their free side only.
+/// The earliest fraction of the way at which the separation of two shapes falls to `target` [m]
+/// while they approach: there it lies in [target - tolerance, target], and no earlier fraction,
+/// and without a hit none at all, has less than target - tolerance.
 ///
-/// Conservative advancement: along the present separating axis n the gap can close no faster than
-/// n . (v_a - v_b) + |w_a| r_a + |w_b| r_b, so the shapes cannot meet before the gap over that; at
-/// most 48 such steps, then the last one, which is still before the impact, counts as it. Source:
-/// Mirtich, "Impulse-based Dynamic Simulation of Rigid Body Systems" (1996).
-/// @pre 0 < tolerance; target >= 0.
+/// - Shapes that start closer than `target`: fraction 0 if their nearest points approach and the
+///   way may lead deeper than target - tolerance / 2 (or, where they start below that, deeper by
+///   tolerance / 4); no hit if they part or stay; otherwise where they approach later.
+/// - A chain's segment is hit on its free side and by the rules of its joints alone (query.hpp); a
+///   shape that comes from behind passes it.
+/// - Two segments, two half-spaces, or one of each never hit. @pre a half-space does not turn.
+/// - At most 64 steps. Where they do not suffice (a graze while spinning) the impact is reported at
+///   the fraction reached, before the true one; shapes that started closer pass.
+///
+/// Conservative advancement: along the normal between the nearest points the gap of each pair of
+/// vertices is bounded from below by a parabola (its speed now, and spin^2 x radius as the greatest
+/// change of it), so a step never leads past the impact, and steps converge quadratically.
+/// Source: Mirtich, "Impulse-based Dynamic Simulation" (1996), 2.3.2, with speeds per vertex.
+/// @pre 0 < tolerance < target, finite sweeps.
 template <int D>
-Impact<D> time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shape<D>& b,
-                         const BodySweep<D>& sweep_b, float target, float tolerance);
+Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shape<D>& b,
+                      const BodySweep<D>& sweep_b, float target, float tolerance);
 
 }  // namespace cycloid::solver

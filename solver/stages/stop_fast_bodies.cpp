@@ -33,10 +33,11 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
                          const StepScratch<D>& scratch, std::uint32_t shape, std::uint32_t other,
                          const BodySweep<D>& sweep) {
   const Shape<D>& a = state.shapes[other];
-  const float slop = context.tuning.slop;
-  const BodySweep<D> other_sweep = sweep_of(context, state, scratch, a.body);
-  const Impact<D> impact =
-      time_of_impact(a, other_sweep, state.shapes[shape], sweep, 0.0f, 0.5f * slop + 1.0e-4f);
+  // Near enough that the next tick finds the contact, far enough that this one did not touch.
+  const float target = min(max(0.5f * context.tuning.slop, 1.0e-4f),
+                           max(context.tuning.speculative_distance, 1.0e-4f));
+  const Impact impact = time_of_impact(a, sweep_of(context, state, scratch, a.body),
+                                       state.shapes[shape], sweep, target, 0.25f * target);
   return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
 }
 

@@ -1,258 +1,250 @@
-#include <gtest/gtest.h>
+#include <random>
 
-#include "solver/collision/collide.hpp"
-#include "solver/queries/query.hpp"
-#include "solver/queries/time_of_impact.hpp"
-#include "tests/solver/world_fixture.hpp"
+#include "tests/solver/query_fixture.hpp"
 
 namespace cycloid::solver {
 
-static BodyId add_fixed(World<2>& world, const Vec<2>& position, const ShapeDef<2>& shape,
-                        float angle = 0.0f) {
-  BodyDef<2> def;
-  def.kind = BodyKind::kStatic;
-  def.position = position;
-  def.rotation = turned(angle);
-  return add(world, def, shape);
-}
-
-static ShapeDef<2> edge(Vec<2> from, Vec<2> to) {
-  ShapeDef<2> shape;
-  shape.kind = ShapeKind::kChain;
-  shape.points = {from, to};
-  return shape;
-}
-
-static Probe<2> ball_probe(float radius) {
-  Probe<2> probe;
-  probe.radius = radius;
-  return probe;
-}
-
-static Probe<2> box_probe(float half_x, float half_y) {
-  Probe<2> probe;
-  probe.count = 4;
-  probe.points[0] = {{-half_x, -half_y}};
-  probe.points[1] = {{half_x, -half_y}};
-  probe.points[2] = {{half_x, half_y}};
-  probe.points[3] = {{-half_x, half_y}};
-  return probe;
-}
-
-TEST(RayCast, MeetsEveryKindWhereItIs) {
+TEST(Queries, ReportInSlotOrderAndObeyFilterAndIgnore) {
   World<2> world = make_world<2>();
-  add_fixed(world, {{2.0f, 0.0f}}, ball<2>(0.5f));
-  add_fixed(world, {{5.0f, 0.0f}}, box(0.5f, 1.0f));
-  add_fixed(world, {{8.0f, 0.0f}}, capsule(0.5f, 0.25f));
-  ShapeDef<2> rounded = box(0.5f, 0.5f);
-  rounded.radius = 0.1f;
-  add_fixed(world, {{11.0f, 0.0f}}, rounded);
-  // Solid to the right of its direction: downwards leaves the side of smaller x free.
-  add_fixed(world, {{14.0f, 0.0f}}, edge({{0.0f, -1.0f}}, {{0.0f, 1.0f}}));
-  add_fixed(world, {{15.0f, 0.0f}}, edge({{0.0f, 1.0f}}, {{0.0f, -1.0f}}));
-  add_ground<2>(world, {{-1.0f, 0.0f}});
-  ASSERT_TRUE(world.set_pose({6, 0}, {{19.0f, 0.0f}}, turned(0.0f)).ok());
-  const auto hits = ray_cast<2>(world.state(), {{0.0f, 0.0f}}, {{20.0f, 0.0f}}, {});
-  std::vector<float> ways;
-  for (const QueryHit<2>& hit : hits) {
-    ways.push_back(20.0f * hit.fraction);
-    EXPECT_NEAR(hit.normal[0], -1.0f, 1.0e-6f);
-    EXPECT_NEAR(hit.point[0], 20.0f * hit.fraction, 1.0e-5f);
-  }
-  const bool first_edge_is_free = hits.size() == 6 && hits[4].body.index == 4;
-  const std::vector<float> expected = {1.5f, 4.5f, 7.25f, 10.4f, first_edge_is_free ? 14.0f : 15.0f,
-                                       19.0f};
-  ASSERT_EQ(ways.size(), expected.size());
-  for (std::size_t i = 0; i < expected.size(); ++i) EXPECT_NEAR(ways[i], expected[i], 1.0e-5f) << i;
-  EXPECT_EQ(ray_cast_first<2>(world.state(), {{20.0f, 0.9f}}, {{0.0f, 0.9f}}, {})->body.index, 6u);
-}
-
-TEST(RayCast, MissesRoundCornersAndStartsInside) {
-  World<2> world = make_world<2>();
-  add_fixed(world, {{0.0f, 0.0f}}, ball<2>(1.0f));
-  EXPECT_FALSE(ray_cast_first<2>(world.state(), {{-5.0f, 1.001f}}, {{5.0f, 1.001f}}, {}));
-  EXPECT_TRUE(ray_cast_first<2>(world.state(), {{-5.0f, 0.999f}}, {{5.0f, 0.999f}}, {}));
-  const auto inside = ray_cast_first<2>(world.state(), {{0.2f, 0.0f}}, {{5.0f, 0.0f}}, {});
-  ASSERT_TRUE(inside);
-  EXPECT_EQ(inside->fraction, 0.0f);
-  EXPECT_EQ(inside->normal[0], -1.0f);
-  EXPECT_FALSE(ray_cast_first<2>(world.state(), {{2.0f, 0.0f}}, {{5.0f, 0.0f}}, {}));
-  const auto glancing = ray_cast_first<2>(world.state(), {{-1000.0f, 0.6f}}, {{0.0f, 0.6f}}, {});
-  ASSERT_TRUE(glancing);
-  EXPECT_NEAR(glancing->point[0], -0.8f, 1.0e-4f);
-}
-
-TEST(RayCast, InSpaceToo) {
-  World<3> world = make_world<3>();
-  add_ground<3>(world, up<3>());
-  add_at<3>(world, {{0.0f, 2.0f, 0.0f}}, ball<3>(0.5f));
-  const auto hits = ray_cast<3>(world.state(), {{0.0f, 5.0f, 0.3f}}, {{0.0f, -5.0f, 0.3f}}, {});
-  ASSERT_EQ(hits.size(), 2u);
-  EXPECT_NEAR(hits[0].fraction, 0.5f, 1.0e-6f);
-  EXPECT_NEAR(hits[1].point[1], 2.4f, 1.0e-5f);
-  EXPECT_NEAR(hits[1].normal[2], 0.6f, 1.0e-5f);
-}
-
-TEST(Query, ObeysFiltersAndIgnoresOne) {
-  World<2> world = make_world<2>();
-  ShapeDef<2> shape = ball<2>(0.5f);
-  shape.filter = {2, 0xffffffffu, 0};
-  const BodyId first = add_at<2>(world, {{2.0f, 0.0f}}, shape);
-  shape.filter = {1, 4, 0};
-  const BodyId second = add_at<2>(world, {{4.0f, 0.0f}}, shape);
-  const auto bodies = [&](const QueryFilter& filter) {
-    std::vector<BodyId> met;
-    for (const auto& hit : ray_cast<2>(world.state(), {{0.0f, 0.0f}}, {{9.0f, 0.0f}}, filter))
-      met.push_back(hit.body);
-    return met;
+  ShapeDef<2> other = ball<2>(1.0f);
+  other.filter = {2, 0xffffffffu, -7};
+  const BodyId far_one = add_at(world, {{20, 0}}, ball<2>(1.0f));
+  const BodyId near_one = add_at(world, {{5, 0}}, ball<2>(1.0f));
+  const BodyId middle = add_at(world, {{10, 0}}, other);
+  const auto ids = [&](const QueryFilter& filter) {
+    std::vector<BodyId> found;
+    for (const auto& hit : ray_cast(world.state(), {{0, 0}}, {{40, 0}}, filter))
+      found.push_back(hit.body);
+    std::vector<BodyId> swept;
+    for (const auto& hit :
+         shape_cast(world.state(), ball_probe<2>(0.5f), pose_of<2>({{0, 0}}), {{40, 0}}, filter))
+      swept.push_back(hit.body);
+    std::vector<BodyId> overlapped;
+    for (const auto& hit :
+         overlap(world.state(), box_probe(30, 1), pose_of<2>({{0, 0}}), 0.0f, filter))
+      overlapped.push_back(hit.body);
+    EXPECT_EQ(found, swept);
+    EXPECT_EQ(found, overlapped);
+    return found;
   };
-  EXPECT_EQ(bodies({{4, 0xffffffffu, 0}, {}}), (std::vector<BodyId>{first, second}));
-  EXPECT_EQ(bodies({{1, 0xffffffffu, 0}, {}}), (std::vector<BodyId>{first}));
-  EXPECT_EQ(bodies({{4, 1, 0}, {}}), (std::vector<BodyId>{second}));
-  EXPECT_EQ(bodies({{4, 0xffffffffu, 0}, first}), (std::vector<BodyId>{second}));
+  using Ids = std::vector<BodyId>;
+  EXPECT_EQ(ids({}), (Ids{far_one, near_one, middle}));
+  EXPECT_EQ(ids({{}, near_one}), (Ids{far_one, middle}));
+  EXPECT_EQ(ids({{1, 2, 0}, {}}), (Ids{middle}));
+  EXPECT_EQ(ids({{1, 0xffffffffu, -7}, {}}), (Ids{far_one, near_one}));
+  EXPECT_EQ(ids({{1, 0, 7}, {}}), Ids{});
+  const BodyId stale{near_one.index, near_one.generation + 1};
+  EXPECT_EQ(ids({{}, stale}), (Ids{far_one, near_one, middle}));
+  EXPECT_EQ(ray_cast_first(world.state(), {{0, 0}}, {{40, 0}}, {})->body, near_one);
+  // Of equal fractions the lowest slot.
+  const auto tie = ray_cast_first(world.state(), {{20, 5}}, {{20, -5}}, {});
+  add_at(world, {{20, 0}}, ball<2>(1.0f));
+  EXPECT_EQ(ray_cast_first(world.state(), {{20, 5}}, {{20, -5}}, {})->body, tie->body);
+  EXPECT_EQ(ray_cast(world.state(), {{20, 5}}, {{20, -5}}, {}).size(), 2u);
 }
 
-TEST(Overlap, ListsInSlotOrderWithDepths) {
+TEST(ShapeCast, StopsWhereTheSurfacesMeet) {
   World<2> world = make_world<2>();
-  add_fixed(world, {{0.9f, 0.0f}}, box(0.5f, 0.5f));
-  add_fixed(world, {{-0.8f, 0.0f}}, ball<2>(0.5f));
-  add_fixed(world, {{0.0f, 5.0f}}, ball<2>(0.5f));
-  const Pose<2> pose{{{0.0f, 0.0f}}, turned(0.0f)};
-  const auto hits = overlap(world.state(), ball_probe(0.35f), pose, 0.1f, {});
-  ASSERT_EQ(hits.size(), 2u);
-  EXPECT_NEAR(hits[0].separation, 0.05f, 1.0e-6f);
-  EXPECT_NEAR(hits[0].normal[0], -1.0f, 1.0e-6f);
-  EXPECT_NEAR(hits[0].point[0], 0.4f, 1.0e-6f);
-  EXPECT_NEAR(hits[1].separation, -0.05f, 1.0e-6f);
-  EXPECT_NEAR(hits[1].normal[0], 1.0f, 1.0e-6f);
+  add_static(world, {{0, 0}}, box(1, 1));
+  const auto first = [&](const Probe<2>& probe, Pose<2> pose, Vec<2> way) {
+    return shape_cast_first(world.state(), probe, pose, way, {});
+  };
+  const auto wall = first(ball_probe<2>(0.5f), pose_of<2>({{-5, 0.25f}}), {{7, 0}});
+  ASSERT_TRUE(wall);
+  EXPECT_NEAR(wall->fraction, 0.5f, kRound);
+  expect_near(wall->point, {{-1, 0.25f}});
+  expect_near(wall->normal, {{-1, 0}});
+
+  // A box on its corner falls onto the flat top, and the corner of the wall meets a flat probe.
+  const float diagonal = std::sqrt(0.5f);
+  const auto corner = first(box_probe(0.5f, 0.5f), {{{0.25f, 5}}, turned(kPi / 4)}, {{0, -8}});
+  ASSERT_TRUE(corner);
+  EXPECT_NEAR(corner->fraction, (4 - diagonal) / 8, kRound);
+  expect_near(corner->point, {{0.25f, 1}});
+  const Vec<2> tilt = rotate(turned(kPi / 4), Vec<2>{{0, 1}});
+  const auto edge = first(box_probe(3, 0.5f), {{{-4, 4}}, turned(kPi / 4)}, {{6, -6}});
+  ASSERT_TRUE(edge);
+  EXPECT_NEAR(edge->fraction, (3 * std::sqrt(2.0f) - 0.5f) / (6 * std::sqrt(2.0f)), kRound);
+  expect_near(edge->normal, tilt);
+  expect_near(edge->point, {{-1, 1}});
 }
 
-TEST(ClosestPoint, OutsideAndInside) {
+TEST(ShapeCast, CapsulesMeetAtTheirEnds) {
   World<2> world = make_world<2>();
-  add_fixed(world, {{0.0f, 0.0f}}, box(1.0f, 2.0f));
-  const auto outside = closest_point<2>(world.state(), {{4.0f, 6.0f}}, 10.0f, {});
+  add_static(world, {{0, 0}}, capsule(1.0f, 0.5f));
+  Probe<2> probe;
+  probe.count = 2;
+  probe.radius = 0.5f;
+  probe.points[0] = {{-1, 0}};
+  probe.points[1] = {{1, 0}};
+  const auto hit = shape_cast_first(world.state(), probe, pose_of<2>({{-8, 0.6f}}), {{10, 0}}, {});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->fraction, (6 - 0.8f) / 10, kRound);
+  expect_near(hit->normal, {{-0.8f, 0.6f}});
+  expect_near(hit->point, {{-1.4f, 0.3f}});
+}
+
+TEST(ShapeCast, OverlapsCountOnlyOnTheWayDeeper) {
+  World<2> world = make_world<2>();
+  add_static(world, {{0, 0}}, box(5, 1));
+  const Probe<2> probe = ball_probe<2>(0.5f);
+  const Pose<2> sunk = pose_of<2>({{0, 1.25f}});
+  const auto down = shape_cast_first(world.state(), probe, sunk, {{0, -1}}, {});
+  ASSERT_TRUE(down);
+  EXPECT_EQ(down->fraction, 0.0f);
+  EXPECT_NEAR(down->separation, -0.25f, kRound);
+  EXPECT_FALSE(shape_cast_first(world.state(), probe, sunk, {{0, 1}}, {}));
+  EXPECT_FALSE(shape_cast_first(world.state(), probe, sunk, {{1, 0}}, {}));
+}
+
+TEST(ShapeCast, SlidesOverTheJointsOfAFlatChainButNotIntoAStep) {
+  World<2> world = make_world<2>();
+  add_static(world, {{0, 0}}, chain({{{-3, 0}}, {{0, 0}}, {{3, 0}}, {{6, 0}}, {{6, 1}}, {{9, 1}}}));
+  for (const float height : {0.5f, 0.499f, 0.501f}) {
+    const auto hit = shape_cast_first(world.state(), box_probe(0.5f, 0.5f),
+                                      pose_of<2>({{-2, height}}), {{10, 0}}, {});
+    ASSERT_TRUE(hit) << height;
+    EXPECT_NEAR(hit->fraction, 0.75f, kRound) << height;
+    expect_near(hit->normal, {{-1, 0}});
+    EXPECT_TRUE(
+        shape_cast_first(world.state(), ball_probe<2>(0.5f), pose_of<2>({{-2, 5}}), {{4, -8}}, {}));
+  }
+}
+
+TEST(ShapeCast, AThinWallStopsASmallBallAcrossAKilometre) {
+  World<2> world = make_world<2>();
+  add_static(world, {{500, 0}}, box(0.01f, 10));
+  add_static(world, {{0, 700}}, ball<2>(0.05f));
+  const auto hit =
+      shape_cast_first(world.state(), ball_probe<2>(0.05f), pose_of<2>({{0, 0}}), {{1000, 0}}, {});
+  ASSERT_TRUE(hit);
+  EXPECT_NEAR(hit->fraction, 499.94f / 1000, 1e-7f);
+  const auto round = shape_cast_first(world.state(), ball_probe<2>(0.05f), pose_of<2>({{0.06f, 0}}),
+                                      {{0, 1000}}, {});
+  ASSERT_TRUE(round);
+  EXPECT_NEAR(round->fraction, (700 - 0.08f) / 1000, 2e-7f);
+}
+
+TEST(Overlap, GivesDepthAndNormalOfAllThatIsNear) {
+  World<2> world = make_world<2>();
+  const BodyId floor = add_ground<2>(world, {{0, 1}});
+  const BodyId box_id = add_static(world, {{3, 1}}, box(1, 1));
+  const BodyId pill = add_static(world, {{-3, 1}}, capsule(1, 0.5f));
+  add_static(world, {{0, 9}}, ball<2>(1));
+  const auto hits =
+      overlap(world.state(), box_probe(2.25f, 0.5f), pose_of<2>({{0, 0.75f}}), 0.5f, {});
+  ASSERT_EQ(hits.size(), 3u);
+  EXPECT_EQ(hits[0].body, floor);
+  EXPECT_NEAR(hits[0].separation, 0.25f, kRound);
+  expect_near(hits[0].normal, {{0, 1}});
+  EXPECT_EQ(hits[1].body, box_id);
+  EXPECT_NEAR(hits[1].separation, -0.25f, kRound);
+  expect_near(hits[1].normal, {{-1, 0}});
+  EXPECT_NEAR(hits[1].point[0], 2, kRound);
+  EXPECT_EQ(hits[2].body, pill);
+  EXPECT_LT(hits[2].separation, -0.5f);
+  EXPECT_EQ(
+      overlap(world.state(), box_probe(2.25f, 0.5f), pose_of<2>({{0, 0.75f}}), 0.25f, {}).size(),
+      2u);
+}
+
+TEST(ClosestPoint, FromOutsideAndInside) {
+  World<2> world = make_world<2>();
+  const BodyId left = add_static(world, {{0, 0}}, box(1, 1));
+  const BodyId right = add_static(world, {{6, 0}}, box(1, 1));
+  const auto outside = closest_point(world.state(), {{2, 2}}, 5.0f, {});
   ASSERT_TRUE(outside);
-  EXPECT_NEAR(outside->separation, 5.0f, 1.0e-5f);
-  EXPECT_NEAR(outside->point[0], 1.0f, 1.0e-5f);
-  EXPECT_NEAR(outside->normal[1], 0.8f, 1.0e-5f);
-  const auto inside = closest_point<2>(world.state(), {{0.7f, 0.0f}}, 10.0f, {});
+  EXPECT_EQ(outside->body, left);
+  EXPECT_NEAR(outside->separation, std::sqrt(2.0f), kRound);
+  expect_near(outside->point, {{1, 1}});
+  const auto inside = closest_point(world.state(), {{6.75f, 0.5f}}, 5.0f, {});
   ASSERT_TRUE(inside);
-  EXPECT_NEAR(inside->separation, -0.3f, 1.0e-6f);
-  EXPECT_NEAR(inside->point[0], 1.0f, 1.0e-6f);
-  EXPECT_FALSE(closest_point<2>(world.state(), {{4.0f, 6.0f}}, 4.9f, {}));
+  EXPECT_EQ(inside->body, right);
+  EXPECT_NEAR(inside->separation, -0.25f, kRound);
+  expect_near(inside->point, {{7, 0.5f}});
+  expect_near(inside->normal, {{1, 0}});
+  EXPECT_EQ(closest_point(world.state(), {{3, 0}}, 5.0f, {})->body, left);
+  EXPECT_FALSE(closest_point(world.state(), {{3, 0}}, 1.9f, {}));
 }
 
-TEST(ShapeCast, StopsAtTheSurface) {
-  World<2> world = make_world<2>();
-  add_fixed(world, {{500.0f, 0.0f}}, box(0.01f, 2.0f));
-  const Pose<2> pose{{{0.0f, 0.0f}}, turned(0.0f)};
-  const auto fast = shape_cast_first(world.state(), ball_probe(0.05f), pose, {{1000.0f, 0.0f}}, {});
-  ASSERT_TRUE(fast);
-  EXPECT_NEAR(1000.0f * fast->fraction, 499.94f, 1.0e-3f);
-  EXPECT_NEAR(fast->normal[0], -1.0f, 1.0e-6f);
-  // A box turned by 45 degrees meets a box with its corner.
-  const Pose<2> corner{{{490.0f, 0.0f}}, turned(0.785398163f)};
-  const auto touch =
-      shape_cast_first(world.state(), box_probe(0.5f, 0.5f), corner, {{20.0f, 0.0f}}, {});
-  ASSERT_TRUE(touch);
-  EXPECT_NEAR(20.0f * touch->fraction, 9.99f - std::sqrt(0.5f), 1.0e-3f);
-  EXPECT_FALSE(
-      shape_cast_first(world.state(), ball_probe(0.05f), pose, {{1000.0f, 10.0f}}, {}).has_value());
+/// Raw generator words alone: the distributions of <random> differ between libraries.
+static float uniform(std::mt19937& random, float lower, float upper) {
+  return lower + (upper - lower) * static_cast<float>(random() >> 8) / 16777216.0f;
 }
 
-TEST(ShapeCast, FromOverlapItMeetsOnlyWhatItMovesInto) {
-  World<2> world = make_world<2>();
-  add_fixed(world, {{0.0f, 0.0f}}, box(1.0f, 1.0f));
-  const Pose<2> pose{{{1.2f, 0.0f}}, turned(0.0f)};
-  EXPECT_FALSE(shape_cast_first(world.state(), ball_probe(0.3f), pose, {{1.0f, 0.0f}}, {}));
-  const auto deeper = shape_cast_first(world.state(), ball_probe(0.3f), pose, {{-1.0f, 0.0f}}, {});
-  ASSERT_TRUE(deeper);
-  EXPECT_EQ(deeper->fraction, 0.0f);
-}
-
-TEST(ShapeCast, ChainsAreMetFromTheirFreeSideAlongTheirWholeLength) {
-  World<2> world = make_world<2>();
-  ShapeDef<2> ground;
-  ground.kind = ShapeKind::kChain;
-  for (int i = 10; i >= -10; --i)
-    ground.points.push_back({{static_cast<float>(i), 0.1f * static_cast<float>(i & 1)}});
-  const BodyId id = add_fixed(world, {{0.0f, 0.0f}}, ground);
-  const bool up_is_free =
-      ray_cast_first<2>(world.state(), {{0.3f, 5.0f}}, {{0.3f, -5.0f}}, {}).has_value();
-  const float side = up_is_free ? 1.0f : -1.0f;
-  for (float x = -9.0f; x < 9.0f; x += 0.37f) {
-    const Pose<2> pose{{{x, 3.0f * side}}, turned(0.0f)};
-    const auto hit =
-        shape_cast_first(world.state(), ball_probe(0.2f), pose, {{0.0f, -6.0f * side}}, {});
-    ASSERT_TRUE(hit) << x;
-    EXPECT_EQ(hit->body, id);
-    EXPECT_NEAR(hit->fraction, 0.47f, 0.02f) << x;
-    const Pose<2> behind{{{x, -3.0f * side}}, turned(0.0f)};
-    EXPECT_FALSE(
-        shape_cast_first(world.state(), ball_probe(0.2f), behind, {{0.0f, 6.0f * side}}, {}))
-        << x;
+static Probe<2> random_probe(std::mt19937& random) {
+  Probe<2> probe;
+  probe.count = 1 + static_cast<std::uint32_t>(random() % 8);
+  const float size = uniform(random, 0.1f, 1.0f);
+  const float flat = size * uniform(random, 0.05f, 1.0f);
+  const bool rounded = probe.count < 3 || random() % 2 == 0;
+  probe.radius = rounded ? uniform(random, 0.01f, 0.3f) : 0.0f;
+  for (std::uint32_t i = 0; i < probe.count; ++i) {
+    const float angle = 2 * kPi * static_cast<float>(i) / static_cast<float>(probe.count);
+    probe.points[i] = {{size * std::cos(angle), flat * std::sin(angle)}};
   }
+  return probe;
 }
 
-/// Least separation over many samples of a sweep, in slices too fine to step over the peg.
-static float sampled_gap(const Shape<2>& a, const BodySweep<2>& sweep_a, const Shape<2>& b,
-                         const BodySweep<2>& sweep_b, float until, int samples) {
-  float least = 1.0e9f;
-  for (int i = 0; i <= samples; ++i) {
-    const float fraction = until * static_cast<float>(i) / static_cast<float>(samples);
-    const Manifold<2> manifold =
-        collide(a, pose_at(sweep_a, fraction), b, pose_at(sweep_b, fraction), 1.0e9f);
-    for (std::uint32_t p = 0; p < manifold.point_count; ++p)
-      least = std::min(least, manifold.points[p].separation);
-  }
-  return least;
-}
-
-TEST(TimeOfImpact, ASpinningRodMeetsTheSmallPeg) {
-  const Shape<2> rod = shape_of(box_probe(1.0f, 0.01f));
-  const Shape<2> peg = shape_of(ball_probe(0.02f));
-  const BodySweep<2> spinning{{{{0.0f, 0.0f}}, turned(0.0f)}, {{0.016f, 0.0f}}, {{50.0f / 60.0f}}};
-  const BodySweep<2> still{{{{0.6f, 0.5f}}, turned(0.0f)}, {{0.0f, 0.0f}}, {{0.0f}}};
-  const Impact<2> impact = time_of_impact(rod, spinning, peg, still, 0.0f, 1.0e-4f);
-  ASSERT_TRUE(impact.hit);
-  EXPECT_GT(sampled_gap(rod, spinning, peg, still, impact.fraction - 0.002f, 400), 0.0f);
-  EXPECT_LT(sampled_gap(rod, spinning, peg, still, impact.fraction + 0.002f, 400), 1.0e-3f);
-}
-
-// Whatever flies at whatever: never later than the true impact, never a miss.
-TEST(TimeOfImpact, NeverPassesThroughOver3000RandomWays) {
-  std::uint64_t seed = 12345;
-  const auto random = [&](float low, float high) {
-    seed = seed * 6364136223846793005u + 1442695040888963407u;
-    return low + (high - low) * static_cast<float>(seed >> 40) / 16777216.0f;
-  };
-  const std::array<Shape<2>, 4> shapes = {shape_of(ball_probe(0.1f)),
-                                          shape_of(box_probe(0.5f, 0.02f)),
-                                          shape_of(box_probe(0.3f, 0.3f)), [] {
-                                            Probe<2> probe;
-                                            probe.count = 2;
-                                            probe.radius = 0.05f;
-                                            probe.points[0] = {{-0.4f, 0.0f}};
-                                            probe.points[1] = {{0.4f, 0.0f}};
-                                            return shape_of(probe);
-                                          }()};
+TEST(ShapeCast, NeverPassesWhatOverlapFindsOnItsWay) {
+  std::mt19937 random(1729);
   int hits = 0;
+  int misses = 0;
   for (int i = 0; i < 3000; ++i) {
-    const Shape<2>& a = shapes[static_cast<std::size_t>(random(0.0f, 3.99f))];
-    const Shape<2>& b = shapes[static_cast<std::size_t>(random(0.0f, 3.99f))];
-    const BodySweep<2> sweep_a{{{{random(-2, 2), random(-2, 2)}}, turned(random(-3, 3))},
-                               {{random(-4, 4), random(-4, 4)}},
-                               {{random(-2, 2)}}};
-    const BodySweep<2> sweep_b{{{{random(-2, 2), random(-2, 2)}}, turned(random(-3, 3))},
-                               {{random(-1, 1), random(-1, 1)}},
-                               {{random(-1, 1)}}};
-    if (sampled_gap(a, sweep_a, b, sweep_b, 0.0f, 1) < 0.01f) continue;
-    const Impact<2> impact = time_of_impact(a, sweep_a, b, sweep_b, 0.005f, 1.0e-3f);
-    hits += impact.hit ? 1 : 0;
-    const float until = impact.hit ? impact.fraction : 1.0f;
-    ASSERT_GT(sampled_gap(a, sweep_a, b, sweep_b, until, 200), 0.003f) << i;
+    const Probe<2> still = random_probe(random);
+    const Probe<2> probe = random_probe(random);
+    ShapeDef<2> shape;
+    shape.kind = shape_of(still).kind;
+    shape.points.assign(still.points.begin(), still.points.begin() + still.count);
+    shape.radius = still.radius;
+    World<2> world = make_world<2>();
+    add_static(world, {{0.25f, 0}}, shape, uniform(random, -3, 3));
+    const Pose<2> pose{{{uniform(random, -3, 3), uniform(random, -3, 3)}},
+                       turned(uniform(random, -3, 3))};
+    const Vec<2> aside = {{uniform(random, -1.5f, 1.5f), uniform(random, -1.5f, 1.5f)}};
+    const Vec<2> way = aside - uniform(random, 0, 2) * pose.position;
+    const auto near = [&](float fraction, float margin) {
+      const Pose<2> at{pose.position + fraction * way, pose.rotation};
+      return overlap(world.state(), probe, at, margin, {});
+    };
+    if (!near(0.0f, 1e-4f).empty()) continue;
+    const auto hit = shape_cast_first(world.state(), probe, pose, way, {});
+    const float until = hit ? hit->fraction : 1.0f;
+    for (int k = 0; k <= 50; ++k)
+      ASSERT_TRUE(near(until * static_cast<float>(k) / 50, -1e-5f).empty()) << i << " " << k;
+    ++(hit ? hits : misses);
+    if (!hit) continue;
+    const auto touch = near(until, 1e-5f);
+    ASSERT_EQ(touch.size(), 1u) << i;
+    EXPECT_LT(dot(hit->normal, way), 0.0f) << i;
+    EXPECT_GT(dot(hit->normal, touch[0].normal), 0.99f) << i;
   }
-  EXPECT_GT(hits, 250);
+  EXPECT_GT(hits, 800);
+  EXPECT_GT(misses, 800);
+}
+
+TEST(Queries, WorkOnBallsInSpace) {
+  World<3> world = make_world<3>();
+  add_ground<3>(world, {{0, 1, 0}});
+  const BodyId id = add_at<3>(world, {{0, 5, 2}}, ball<3>(1));
+  const auto ray = ray_cast_first(world.state(), {{-5, 5, 2.6f}}, {{5, 5, 2.6f}}, {});
+  ASSERT_TRUE(ray);
+  EXPECT_EQ(ray->body, id);
+  EXPECT_NEAR(ray->fraction, 0.42f, kRound);
+  expect_near(ray->normal, {{-0.8f, 0, 0.6f}});
+  const auto cast =
+      shape_cast(world.state(), ball_probe<3>(0.5f), pose_of<3>({{0, 10, 2}}), {{0, -10, 0}}, {});
+  ASSERT_EQ(cast.size(), 2u);
+  EXPECT_NEAR(cast[0].fraction, 0.95f, kRound);
+  EXPECT_NEAR(cast[1].fraction, 0.35f, kRound);
+  expect_near(cast[1].point, {{0, 6, 2}});
+  const auto near = overlap(world.state(), ball_probe<3>(1), pose_of<3>({{3, 5, 2}}), 1.5f, {});
+  ASSERT_EQ(near.size(), 1u);
+  EXPECT_NEAR(near[0].separation, 1, kRound);
+  const auto point = closest_point(world.state(), {{0, 1, 9}}, 10.0f, {});
+  ASSERT_TRUE(point);
+  EXPECT_NEAR(point->separation, 1, kRound);
+  expect_near(point->point, {{0, 0, 9}});
 }
 
 }  // namespace cycloid::solver

@@ -104,7 +104,7 @@ TEST(Schemas, WithoutIdsAreSeen) {
 
 /// "Suite.Test" of every test of the tree.
 static Names tests_of(const std::vector<Source>& sources) {
-  static const std::regex kTest(R"(^\s*TEST(_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\))");
+  static const std::regex kTest(R"(^\s*(?:TYPED_)?TEST(_F|_P)?\(\s*(\w+)\s*,\s*(\w+)\s*\))");
   Names tests;
   for (const Source& source : sources)
     for (const std::string& line : source.code) {

@@ -15,7 +15,8 @@ static void set_angle_axis(const JointFrame<3>&, JointRows<3>&) {}
 
 /// Two anchors at one point: a pin in the plane, a ball joint in space.
 ///   C = anchor_b - anchor_a [m],  Cdot = v_b + w_b x r_b - v_a - w_a x r_a,
-///   J = (-1, [r_a]x, 1, -[r_b]x): D equalities solved as one block, impulse [N s] unbounded.
+///   J_i = (-u_i, -(r_a + d) x u_i, u_i, r_b x u_i) along the axes u_i of body a, d = C:
+///   D equalities solved as one block, impulse [N s] unbounded.
 /// In the plane a spring, a motor and limits act on the angle [rad], in N m s.
 /// Source: Catto, "Modeling and Solving Constraints" (GDC 2009).
 template <int D>

@@ -1,0 +1,58 @@
+#include "bench/figures/gnuplot.hpp"
+
+#include <stdio.h>
+
+#include <filesystem>
+#include <iomanip>
+#include <sstream>
+
+namespace cycloid::figures {
+
+/// Between single quotes gnuplot reads everything as it stands, but for the quote itself.
+static std::string quoted(const std::string& text) {
+  std::string result = "'";
+  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  return result + "'";
+}
+
+std::string gnuplot_script(const experiments::Figure& figure, const std::string& svg_file) {
+  std::ostringstream script;
+  script << std::setprecision(9);
+  // noenhanced: '_' and '^' of names and formulas are letters.
+  script << "set terminal svg size 720,440 noenhanced font 'sans,13' background '#ffffff'\n"
+         << "set output " << quoted(svg_file) << '\n'
+         << "set title " << quoted(figure.title) << '\n'
+         << "set xlabel " << quoted(figure.x_label) << '\n'
+         << "set ylabel " << quoted(figure.y_label) << '\n'
+         << "set grid back lc rgb '#dddddd'\nset key outside right\n";
+  if (figure.log_x) script << "set logscale x\n";
+  if (figure.log_y) script << "set logscale y\n";
+  for (std::size_t i = 0; i < figure.curves.size(); ++i) {
+    script << "$curve" << i << " << END\n";
+    for (const auto& [x, y] : figure.curves[i].points) script << x << ' ' << y << '\n';
+    script << "END\n";
+  }
+  script << "plot";
+  for (std::size_t i = 0; i < figure.curves.size(); ++i)
+    script << (i == 0 ? " " : ", ") << "$curve" << i << " with linespoints pointsize 0.4 title "
+           << quoted(figure.curves[i].name);
+  script << '\n';
+  return script.str();
+}
+
+std::string draw(const experiments::Figure& figure, const std::string& folder) {
+  std::error_code error;
+  std::filesystem::create_directories(folder, error);
+  if (error) return folder + ": cannot be made: " + error.message();
+  const std::string file = (std::filesystem::path(folder) / (figure.name + ".svg")).string();
+  FILE* gnuplot = popen("gnuplot -", "w");
+  if (gnuplot == nullptr) return "gnuplot cannot be started";
+  const std::string script = gnuplot_script(figure, file);
+  const bool written = fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
+  const int status = pclose(gnuplot);
+  if (written && status == 0) return "";
+  std::filesystem::remove(file, error);
+  return file + ": gnuplot did not draw it; is the package gnuplot-nox installed?";
+}
+
+}  // namespace cycloid::figures

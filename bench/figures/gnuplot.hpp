@@ -1,0 +1,17 @@
+#pragma once
+
+#include <string>
+
+#include "bench/experiments/experiment.hpp"
+
+namespace cycloid::figures {
+
+/// The program that draws a figure into `svg_file`, for gnuplot, with the data in it: equal figures
+/// give equal text.
+std::string gnuplot_script(const experiments::Figure& figure, const std::string& svg_file);
+
+/// Draws into FOLDER/NAME.svg with the gnuplot that is installed.
+/// @returns "" or why it could not; then no half-drawn file is left.
+std::string draw(const experiments::Figure& figure, const std::string& folder);
+
+}  // namespace cycloid::figures
