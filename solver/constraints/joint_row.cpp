@@ -48,9 +48,10 @@ void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a,
   row.rows_function(frame, row.rows);
   factor_block(0, row.rows.split, row, row.blocks[0]);
   factor_block(row.rows.split, row.rows.count, row, row.blocks[1]);
-  if (row.rows.has_axis) row.axis = hold_block(row, row.rows.axis);
-  if (row.rows.has_axis)
-    row.motor = row.rows.has_motor_axis ? hold_block(row, row.rows.motor_axis) : row.axis;
+  const bool acts = row.spring_enabled || row.limit_enabled || row.motor_enabled;
+  if (!row.rows.has_axis || !acts) return;
+  row.axis = hold_block(row, row.rows.axis);
+  row.motor = row.rows.has_motor_axis ? hold_block(row, row.rows.motor_axis) : row.axis;
 }
 
 template void evaluate_rows(const WorldState<2>&, float, const Motion<2>&, const Motion<2>&,

@@ -44,9 +44,8 @@ void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow
                           (softness.mass_scale * change[i] + softness.impulse_scale * old);
     size += change[i] * change[i];
   }
-  size = sqrt(size);
   const float bound = row.impulse_max[index];
-  const float scale = size > bound ? bound / size : 1.0f;
+  const float scale = size > bound * bound ? bound / sqrt(size) : 1.0f;
   for (int i = 0; i < count; ++i) {
     const float accumulated = scale * change[i];
     apply_row(row, row.rows.rows[static_cast<std::size_t>(begin + i)],

@@ -3,8 +3,8 @@
 
 namespace cycloid::solver {
 
-/// No bound on an impulse: more than any bounded world can ask for.
-static constexpr float kUnbounded = 1.0e30f;
+/// No bound on an impulse: more than any bounded world can ask for, and its square is finite.
+static constexpr float kUnbounded = 1.0e18f;
 
 /// Which blocks of equalities are springs, and how much each may push.
 template <int D>

@@ -5,6 +5,9 @@ namespace cycloid::solver {
 
 /// The coordinate is the angle of b relative to a, rad in (-pi, pi]: J = (0, -1, 0, 1).
 static void set_angle_axis(const JointFrame<2>& frame, JointRows<2>& rows) {
+  const Joint<2>& joint = frame.joint;
+  // Most pins only pin: an arctangent that nothing asks for is a third of their cost.
+  if (joint.limit_enabled == 0 && joint.motor == MotorKind::kOff && joint.hertz == 0.0f) return;
   rows.has_axis = true;
   rows.axis.angular_a[0] = -1.0f;
   rows.axis.angular_b[0] = 1.0f;
