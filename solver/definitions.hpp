@@ -52,10 +52,15 @@ enum class ShapeKind : std::uint32_t {
   kFree = 0,
   kBall,       ///< centre points[0], radius. Both dimensions.
   kHalfSpace,  ///< solid where dot(normal, x) <= offset. Static bodies only. Both dimensions.
-  kCapsule,    ///< points[0..1], radius. 2D.
+  kCapsule,    ///< points[0..1], radius. Both dimensions.
   kPolygon,    ///< 3 to 8 convex points in either winding, rounded by radius >= 0. 2D.
   kSegment,    ///< One edge of a chain; made by kChain, never defined directly.
   kChain,  ///< Open or closed polyline of a static body, solid to the right of its direction. 2D.
+  kBox,    ///< `half` extents, turned by `rotation`, about points[0] (none: the origin). 3D.
+  kHull,   ///< The convex hull of 4 to 256 points with at most 64 corners. 3D.
+  kTriangle,     ///< One face of a mesh; made by kMesh and kHeightField, never defined directly.
+  kMesh,         ///< Triangles of a static body, counter-clockwise seen from their free side. 3D.
+  kHeightField,  ///< A grid of heights of a static body, free above. 3D.
 };
 
 /// Which shapes meet: (a.category & b.mask) and (b.category & a.mask), unless both carry the same
@@ -84,8 +89,16 @@ struct ShapeDef {
   std::vector<Vec<D>> points;  ///< Body frame, m. Ball: its centre (none: the origin).
   float radius = 0.0f;         ///< m.
   Vec<D> normal = Vec<D>::zero();
-  float offset = 0.0f;   ///< m along `normal`.
-  bool loop = false;     ///< Chain: the last point joins the first.
+  float offset = 0.0f;                                  ///< m along `normal`.
+  bool loop = false;                                    ///< Chain: the last point joins the first.
+  Vec<D> half = Vec<D>::zero();                         ///< Box: half extents, m, > 0.
+  Rotation<D> rotation = identity_rotation<D>();        ///< Box: of its axes, body frame.
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< Mesh: indices into points.
+  /// Height field: `heights`[row * columns + column] above the plane y = 0 of the body frame, the
+  /// columns `cell`[0] apart along x from points[0] (none: the origin), the rows cell[1] along z.
+  std::vector<float> heights;
+  std::uint32_t columns = 0;
+  std::array<float, 2> cell{};
   float density = 1.0f;  ///< kg/m^D; ignored where the body states its mass or is not dynamic.
   std::uint32_t material = 0;  ///< Index of a material of the world.
   Filter filter;

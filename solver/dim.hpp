@@ -54,7 +54,7 @@ struct Dim {
   static constexpr int kTangents = D - 1;           ///< Friction directions per contact point.
   static constexpr int kRotation = D == 2 ? 2 : 4;  ///< (cos, sin) or quaternion (x, y, z, w).
   static constexpr int kManifoldPoints = D == 2 ? 2 : 4;
-  static constexpr int kVertices = D == 2 ? 8 : 1;      ///< Most vertices of one convex shape.
+  static constexpr int kVertices = D == 2 ? 8 : 64;     ///< Most vertices of one convex shape.
   static constexpr int kMortonBits = D == 2 ? 16 : 10;  ///< Per axis; all axes fit 32 bits.
   static constexpr int kMotionFloats = D == 2 ? 8 : 16;
 };

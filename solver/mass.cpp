@@ -92,7 +92,48 @@ static void add_hull(const Shape<2>& shape, float density, MassProperties<2>& in
   add_core(shape, density, into);
   if (shape.radius > 0.0f) add_rounding(shape, density, into);
 }
-static void add_hull(const Shape<3>&, float, MassProperties<3>&) {}
+
+/// The moment of a body that is round about axis 1 of `rotation`, in the body frame.
+static Inertia<3> round_inertia(float along, float across, const Vec<3>& axis) {
+  Inertia<3> inertia;
+  for (int i = 0; i < 3; ++i)
+    for (int j = 0; j < 3; ++j)
+      inertia.m[i * 3 + j] = (i == j ? across : 0.0f) + (along - across) * axis[i] * axis[j];
+  return inertia;
+}
+
+/// A cylinder and, at either end, half a ball, whose centre of mass lies 3/8 r beyond the end.
+static void add_capsule(const Shape<3>& shape, float density, MassProperties<3>& into) {
+  const float r = shape.radius;
+  const Vec<3> span = shape.vertices[1] - shape.vertices[0];
+  const float height = length(span);
+  const Vec<3> axis = (1.0f / height) * span;
+  const float cylinder = density * kPi * r * r * height;
+  const float square = r * r;
+  add_part(cylinder, shape.vertices[0] + 0.5f * span,
+           round_inertia(0.5f * cylinder * square,
+                         cylinder * (0.25f * square + height * height / 12.0f), axis),
+           into);
+  const float cap = density * 2.0f / 3.0f * kPi * r * square;
+  const Inertia<3> of_cap = round_inertia(0.4f * cap * square, 83.0f / 320.0f * cap * square, axis);
+  add_part(cap, shape.vertices[0] - (0.375f * r) * axis, of_cap, into);
+  add_part(cap, shape.vertices[1] + (0.375f * r) * axis, of_cap, into);
+}
+
+static void add_box(const Shape<3>& shape, float density, MassProperties<3>& into) {
+  const Vec<3> h = shape.half;
+  const float mass = density * 8.0f * h[0] * h[1] * h[2];
+  const float third = mass / 3.0f;
+  const Inertia<3> own = {{third * (h[1] * h[1] + h[2] * h[2]), 0.0f, 0.0f, 0.0f,
+                           third * (h[2] * h[2] + h[0] * h[0]), 0.0f, 0.0f, 0.0f,
+                           third * (h[0] * h[0] + h[1] * h[1])}};
+  add_part(mass, shape.vertices[0], world_inertia(own, shape.rotation), into);
+}
+
+static void add_hull(const Shape<3>& shape, float density, MassProperties<3>& into) {
+  if (shape.kind == ShapeKind::kCapsule) add_capsule(shape, density, into);
+  if (shape.kind == ShapeKind::kBox) add_box(shape, density, into);
+}
 
 template <int D>
 void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into) {
@@ -100,7 +141,7 @@ void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into) {
     const Vec<D> centre = shape.vertices[0];
     const float mass = density * ball_volume(shape.radius, centre);
     add_part(mass, centre, ball_inertia(mass, shape.radius, centre), into);
-  } else if (shape.kind == ShapeKind::kCapsule || shape.kind == ShapeKind::kPolygon) {
+  } else if (shape.kind != ShapeKind::kHalfSpace && shape.kind != ShapeKind::kSegment) {
     add_hull(shape, density, into);
   }
 }

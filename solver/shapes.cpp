@@ -101,7 +101,30 @@ static Error append_hull(const ShapeDef<2>& def, int index, std::vector<Shape<2>
   if (def.kind == ShapeKind::kCapsule) return append_capsule(def, index, into);
   return append_chain(def, index, into);
 }
-static Error append_hull(const ShapeDef<3>&, int index, std::vector<Shape<3>>&) {
+
+static Error append_capsule(const ShapeDef<3>& def, int index, std::vector<Shape<3>>& into) {
+  if (length(def.points[1] - def.points[0]) < kSizeMin) return {Code::kInvalid, "points", index};
+  Shape<3> shape = blank_shape(def);
+  shape.vertex_count = 2;
+  shape.vertices[0] = def.points[0];
+  shape.vertices[1] = def.points[1];
+  into.push_back(shape);
+  return {};
+}
+
+static Error append_box(const ShapeDef<3>& def, std::vector<Shape<3>>& into) {
+  Shape<3> shape = blank_shape(def);
+  shape.vertex_count = 1;
+  shape.vertices[0] = def.points.empty() ? Vec<3>::zero() : def.points[0];
+  shape.half = def.half;
+  shape.rotation = normalized_or(def.rotation, identity_rotation<3>());
+  into.push_back(shape);
+  return {};
+}
+
+static Error append_hull(const ShapeDef<3>& def, int index, std::vector<Shape<3>>& into) {
+  if (def.kind == ShapeKind::kCapsule) return append_capsule(def, index, into);
+  if (def.kind == ShapeKind::kBox) return append_box(def, into);
   return {Code::kInvalid, "kind", index};
 }
 
@@ -123,10 +146,40 @@ Error append_shapes(const ShapeDef<D>& def, int index, std::vector<Shape<D>>& in
 
 template <int D>
 void shift_shape(const Vec<D>& local_center, Shape<D>& shape) {
-  const std::uint32_t used = shape.kind == ShapeKind::kSegment ? 4 : shape.vertex_count;
+  // A segment's ghosts and a triangle's are places too.
+  std::uint32_t used = shape.vertex_count;
+  if (shape.kind == ShapeKind::kSegment) used = 4;
+  if (shape.kind == ShapeKind::kTriangle) used = 6;
   for (std::uint32_t i = 0; i < used; ++i) shape.vertices[i] -= local_center;
   shape.offset =
       shape.kind == ShapeKind::kHalfSpace ? shape.offset - dot(shape.normal, local_center) : 0.0f;
+}
+
+float extent_of(const Shape<2>& shape) {
+  float extent = 0.0f;
+  for (std::uint32_t v = 0; v < shape.vertex_count; ++v)
+    extent = max(extent, length(shape.vertices[v]) + shape.radius);
+  return extent;
+}
+float extent_of(const Shape<3>& shape) {
+  float extent = 0.0f;
+  for (std::uint32_t v = 0; v < shape.vertex_count; ++v)
+    extent = max(extent, length(shape.vertices[v]) + shape.radius);
+  return extent + length(shape.half);
+}
+
+float thickness_of(const Shape<2>& shape) {
+  if (shape.kind != ShapeKind::kPolygon) return shape.radius;
+  Vec<2> middle = Vec<2>::zero();
+  for (std::uint32_t v = 0; v < shape.vertex_count; ++v)
+    middle += (1.0f / static_cast<float>(shape.vertex_count)) * shape.vertices[v];
+  float inner = kSizeMax;
+  for (std::uint32_t v = 0; v < shape.vertex_count; ++v)
+    inner = min(inner, dot(shape.normals[v], shape.vertices[v] - middle));
+  return max(inner, 0.0f) + shape.radius;
+}
+float thickness_of(const Shape<3>& shape) {
+  return shape.radius + min(shape.half[0], min(shape.half[1], shape.half[2]));
 }
 
 template Error append_shapes(const ShapeDef<2>&, int, std::vector<Shape<2>>&);

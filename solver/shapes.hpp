@@ -19,4 +19,13 @@ Error append_shapes(const ShapeDef<D>& def, int index, std::vector<Shape<D>>& in
 template <int D>
 void shift_shape(const Vec<D>& local_center, Shape<D>& shape);
 
+/// How far the farthest point lies from the centre of mass, m; of a box or hull, of its bounding
+/// box. 0 for a half-space.
+float extent_of(const Shape<2>& shape);
+float extent_of(const Shape<3>& shape);
+
+/// The radius of a ball that fits into its thinnest place, m. @pre the shape has vertices.
+float thickness_of(const Shape<2>& shape);
+float thickness_of(const Shape<3>& shape);
+
 }  // namespace cycloid::solver

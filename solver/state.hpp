@@ -7,6 +7,7 @@
 
 #include "solver/definitions.hpp"
 #include "solver/particles/particle.hpp"
+#include "solver/solids/polyhedron.hpp"
 
 namespace cycloid::solver {
 
@@ -81,21 +82,39 @@ bool is_active(const Body<D>& body) {
   }
 }
 
+/// What a shape looks like, in the frame of the centre of mass.
 template <int D>
-struct Shape {
+struct Geometry;
+template <>
+struct Geometry<2> {
+  std::array<Vec<2>, 8> vertices;  ///< Counter-clockwise.
+  std::array<Vec<2>, 8> normals;   ///< Of the edge from vertex i to i + 1.
+};
+template <>
+struct Geometry<3> {
+  /// Ball: centre. Capsule: ends. Triangle: corners, then the far corner of the neighbour across
+  /// the edge from corner i to i + 1. Box and hull: the middle of the bounding box.
+  std::array<Vec<3>, 6> vertices;
+  Vec<3> half;                       ///< Box and hull: half extents of the bounding box; else 0.
+  Rotation<3> rotation;              ///< Box and hull: of the bounding box's axes.
+  std::uint32_t polyhedron = kNone;  ///< Hull: slot in WorldState::polyhedra.
+};
+
+template <int D>
+struct Shape : Geometry<D> {
   ShapeKind kind = ShapeKind::kFree;
   std::uint32_t body = kNone;
   std::uint32_t next = kNone;  ///< Next shape of the same body.
   std::uint32_t ordinal = 0;   ///< Index within the body.
   std::uint32_t material = 0;
   Filter filter;
-  std::uint32_t vertex_count = 0;
-  std::uint32_t ghosts = 0;  ///< Segment: bit 0: vertices[2] precedes vertex 0, bit 1: [3] follows.
+  std::uint32_t vertex_count = 0;  ///< Of `vertices`, without ghosts.
+  /// Segment: bit 0: vertices[2] precedes vertex 0, bit 1: [3] follows. Triangle: bit i: edge i has
+  /// a neighbour, vertices[3 + i].
+  std::uint32_t ghosts = 0;
   float radius = 0.0f;
   float offset = 0.0f;
-  Vec<D> normal;                                   ///< Half-space.
-  std::array<Vec<D>, Dim<D>::kVertices> vertices;  ///< From the centre of mass, counter-clockwise.
-  std::array<Vec<D>, Dim<D>::kVertices> normals;   ///< Of the edge from vertex i to i + 1.
+  Vec<D> normal;  ///< Half-space; triangle: of its free side.
 };
 
 template <int D>
@@ -178,6 +197,7 @@ struct WorldState {
   std::vector<std::uint32_t> free_bodies;
   std::vector<Shape<D>> shapes;
   std::vector<std::uint32_t> free_shapes;
+  Polyhedra polyhedra;
   std::vector<Joint<D>> joints;
   std::vector<std::uint32_t> free_joints;
   std::vector<Contact<D>> contacts;  ///< Sorted by (shape_a, shape_b).

@@ -94,33 +94,50 @@ Error validate(const BodyDef<D>& def) {
   return {};
 }
 
+/// Kinds that exist in the plane only have one spin, those of space three.
+static bool has_dimension(ShapeKind kind, int spin) {
+  switch (kind) {
+    case ShapeKind::kBall:
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kCapsule:
+      return true;
+    case ShapeKind::kPolygon:
+    case ShapeKind::kChain:
+      return spin == 1;
+    case ShapeKind::kBox:
+    case ShapeKind::kHull:
+    case ShapeKind::kMesh:
+    case ShapeKind::kHeightField:
+      return spin != 1;
+    default:
+      return false;
+  }
+}
+
+static bool is_of_static_bodies(ShapeKind kind) {
+  return kind == ShapeKind::kHalfSpace || kind == ShapeKind::kChain || kind == ShapeKind::kMesh ||
+         kind == ShapeKind::kHeightField;
+}
+
 template <int D>
 static Error validate_kind(const ShapeDef<D>& def, BodyKind body, int index) {
-  const bool is_static = body == BodyKind::kStatic;
-  switch (def.kind) {
-    case ShapeKind::kBall:
-      return {};
-    case ShapeKind::kHalfSpace:
-    case ShapeKind::kChain:
-      if (!is_static) return invalid("kind", index);
-      break;
-    case ShapeKind::kCapsule:
-    case ShapeKind::kPolygon:
-      break;
-    default:
-      return invalid("kind", index);
-  }
-  const bool planar_only = def.kind != ShapeKind::kHalfSpace;
-  if (planar_only && Dim<D>::kVertices < 8) return invalid("kind", index);
+  if (!has_dimension(def.kind, Dim<D>::kSpin)) return invalid("kind", index);
+  if (is_of_static_bodies(def.kind) && body != BodyKind::kStatic) return invalid("kind", index);
   return {};
 }
 
 static bool point_count_fits(ShapeKind kind, std::size_t count) {
   switch (kind) {
     case ShapeKind::kBall:
+    case ShapeKind::kBox:
+    case ShapeKind::kHeightField:
       return count <= 1;
     case ShapeKind::kHalfSpace:
       return count == 0;
+    case ShapeKind::kHull:
+      return count >= 4 && count <= kHullPointsMax;
+    case ShapeKind::kMesh:
+      return count >= 3;
     case ShapeKind::kCapsule:
       return count == 2;
     case ShapeKind::kPolygon:
@@ -137,7 +154,14 @@ Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int
   for (const Vec<D>& point : def.points)
     if (!within(point, kSizeMax)) return invalid("points", index);
   const bool round = def.kind == ShapeKind::kBall || def.kind == ShapeKind::kCapsule;
-  if (!within(def.radius, round ? kSizeMin : 0.0f, kSizeMax)) return invalid("radius", index);
+  const bool sharp = !has_dimension(def.kind, 1);
+  if (!within(def.radius, round ? kSizeMin : 0.0f, sharp ? 0.0f : kSizeMax))
+    return invalid("radius", index);
+  if (def.kind == ShapeKind::kBox) {
+    for (const float half : def.half.v)
+      if (!within(half, kSizeMin, kSizeMax)) return invalid("half", index);
+    if (!is_unit(def.rotation)) return invalid("rotation", index);
+  }
   if (def.kind == ShapeKind::kHalfSpace) {
     if (!is_unit(def.normal)) return invalid("normal", index);
     if (!within(def.offset, -kSizeMax, kSizeMax)) return invalid("offset", index);

@@ -57,8 +57,7 @@ static Error validate_bodies(const WorldState<D>& state) {
   return {};
 }
 
-template <int D>
-static bool vertices_fit(const Shape<D>& shape) {
+static bool outline_fits(const WorldState<2>&, const Shape<2>& shape) {
   const std::uint32_t n = shape.vertex_count;
   switch (shape.kind) {
     case ShapeKind::kFree:
@@ -69,9 +68,32 @@ static bool vertices_fit(const Shape<D>& shape) {
       return n == 0;
     case ShapeKind::kCapsule:
     case ShapeKind::kSegment:
-      return n == 2 && Dim<D>::kVertices >= 4;
+      return n == 2;
     case ShapeKind::kPolygon:
-      return n >= 3 && n <= Dim<D>::kVertices;
+      return n >= 3 && n <= shape.vertices.size();
+    default:
+      return false;
+  }
+}
+static bool outline_fits(const WorldState<3>& state, const Shape<3>& shape) {
+  const std::uint32_t n = shape.vertex_count;
+  const bool turned = within(dot(shape.rotation, shape.rotation), 0.99f, 1.01f);
+  switch (shape.kind) {
+    case ShapeKind::kFree:
+      return true;
+    case ShapeKind::kBall:
+      return n == 1;
+    case ShapeKind::kHalfSpace:
+      return n == 0;
+    case ShapeKind::kCapsule:
+      return n == 2;
+    case ShapeKind::kTriangle:
+      return n == 3 && shape.ghosts < 8;
+    case ShapeKind::kBox:
+      return n == 1 && turned;
+    case ShapeKind::kHull:
+      return n == 1 && turned && shape.polyhedron < state.polyhedra.records.size() &&
+             state.polyhedra.records[shape.polyhedron].references > 0;
     default:
       return false;
   }
@@ -81,7 +103,7 @@ template <int D>
 static Error validate_shapes(const WorldState<D>& state) {
   for (std::size_t i = 0; i < state.shapes.size(); ++i) {
     const Shape<D>& shape = state.shapes[i];
-    if (!is_finite(shape) || !vertices_fit(shape)) return corrupt("shape", i);
+    if (!is_finite(shape) || !outline_fits(state, shape)) return corrupt("shape", i);
     if (shape.kind != ShapeKind::kFree && shape.material >= state.materials.size())
       return corrupt("shape", i);
   }

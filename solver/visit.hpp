@@ -43,6 +43,24 @@ constexpr void visit_fields(R& r, F&& f, const Body<D>*) {
   f("asleep", r.asleep);
 }
 
+/// The part of a shape that is not the same in the plane and in space.
+template <class R, class F>
+requires requires(R& r) {
+  r.normals;
+}
+constexpr void visit_outline(R& r, F&& f) {
+  f("normals", r.normals);
+}
+template <class R, class F>
+requires requires(R& r) {
+  r.polyhedron;
+}
+constexpr void visit_outline(R& r, F&& f) {
+  f("half", r.half);
+  f("rotation", r.rotation);
+  f("polyhedron", r.polyhedron);
+}
+
 template <class R, class F, int D>
 constexpr void visit_fields(R& r, F&& f, const Shape<D>*) {
   f("kind", r.kind);
@@ -59,7 +77,39 @@ constexpr void visit_fields(R& r, F&& f, const Shape<D>*) {
   f("offset", r.offset);
   f("normal", r.normal);
   f("vertices", r.vertices);
-  f("normals", r.normals);
+  visit_outline(r, f);
+}
+
+template <class R, class F>
+constexpr void visit_fields(R& r, F&& f, const Polyhedron*) {
+  f("references", r.references);
+  f("first_vertex", r.first_vertex);
+  f("vertex_count", r.vertex_count);
+  f("first_face", r.first_face);
+  f("face_count", r.face_count);
+  f("first_edge", r.first_edge);
+  f("edge_count", r.edge_count);
+}
+
+template <class R, class F>
+constexpr void visit_fields(R& r, F&& f, const PolyhedronVertex*) {
+  f("position", r.position);
+  f("edge", r.edge);
+}
+
+template <class R, class F>
+constexpr void visit_fields(R& r, F&& f, const PolyhedronFace*) {
+  f("normal", r.normal);
+  f("offset", r.offset);
+  f("edge", r.edge);
+}
+
+template <class R, class F>
+constexpr void visit_fields(R& r, F&& f, const PolyhedronEdge*) {
+  f("origin", r.origin);
+  f("twin", r.twin);
+  f("next", r.next);
+  f("face", r.face);
 }
 
 template <class R, class F, int D>
@@ -219,6 +269,10 @@ void visit_arrays(S& state, F&& f) {
   f("free body", state.free_bodies);
   f("shape", state.shapes);
   f("free shape", state.free_shapes);
+  f("polyhedron", state.polyhedra.records);
+  f("polyhedron vertex", state.polyhedra.vertices);
+  f("polyhedron face", state.polyhedra.faces);
+  f("polyhedron edge", state.polyhedra.edges);
   f("joint", state.joints);
   f("free joint", state.free_joints);
   f("contact", state.contacts);
@@ -293,6 +347,8 @@ static_assert(visited_bytes<WorldHeader<2>>() == sizeof(WorldHeader<2>));
 static_assert(kVisitsEverything<Material>);
 static_assert(kVisitsEverything<Body<2>> && kVisitsEverything<Body<3>>);
 static_assert(kVisitsEverything<Shape<2>> && kVisitsEverything<Shape<3>>);
+static_assert(kVisitsEverything<Polyhedron> && kVisitsEverything<PolyhedronVertex>);
+static_assert(kVisitsEverything<PolyhedronFace> && kVisitsEverything<PolyhedronEdge>);
 static_assert(kVisitsEverything<Contact<2>> && kVisitsEverything<Contact<3>>);
 static_assert(kVisitsEverything<Joint<2>> && kVisitsEverything<Joint<3>>);
 static_assert(kVisitsEverything<Particle<2>> && kVisitsEverything<Particle<3>>);

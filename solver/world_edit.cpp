@@ -67,16 +67,8 @@ static void set_size(const std::vector<Shape<D>>& shapes, Body<D>& body) {
   for (std::uint32_t s = body.first_shape; s != kNone; s = shapes[s].next) {
     const Shape<D>& shape = shapes[s];
     if (shape.vertex_count == 0) continue;
-    float inner = shape.kind == ShapeKind::kPolygon ? kSizeMax : 0.0f;
-    Vec<D> middle = Vec<D>::zero();
-    for (std::uint32_t v = 0; v < shape.vertex_count; ++v)
-      middle += (1.0f / static_cast<float>(shape.vertex_count)) * shape.vertices[v];
-    for (std::uint32_t v = 0; v < shape.vertex_count; ++v) {
-      body.extent = max(body.extent, length(shape.vertices[v]) + shape.radius);
-      if (shape.kind == ShapeKind::kPolygon)
-        inner = min(inner, dot(shape.normals[v], shape.vertices[v] - middle));
-    }
-    const float thickness = max(inner, 0.0f) + shape.radius;
+    const float thickness = thickness_of(shape);
+    body.extent = max(body.extent, extent_of(shape));
     body.thickness = body.thickness == 0.0f ? thickness : min(body.thickness, thickness);
   }
 }

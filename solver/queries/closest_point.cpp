@@ -14,7 +14,7 @@ std::optional<QueryHit<D>> closest_point(const WorldState<D>& state, const Vec<D
   Core<D> reach = core;
   reach.radius = max(distance_max, 0.0f);
   const auto test = [&](const Shape<D>& shape, const Pose<D>& relative) {
-    const Core<D> other = core_of(shape, relative.rotation, relative.position);
+    const Core<D> other = core_of(shape, relative.rotation, relative.position, state.polyhedra);
     const Separation<D> between = separation_of(other, core);
     const float distance = abs(between.distance);
     if (!(distance <= distance_max)) return;

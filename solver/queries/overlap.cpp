@@ -22,7 +22,8 @@ Shape<D> shape_of(const Probe<D>& probe) {
   if (probe.count == 2) shape.kind = ShapeKind::kCapsule;
   shape.vertex_count = probe.count;
   shape.radius = probe.radius;
-  shape.vertices = probe.points;
+  for (std::size_t i = 0; i < shape.vertices.size() && i < probe.count; ++i)
+    shape.vertices[i] = probe.points[i];
   fill_normals(shape);
   return shape;
 }
@@ -31,11 +32,11 @@ template <int D>
 std::vector<QueryHit<D>> overlap(const WorldState<D>& state, const Probe<D>& probe,
                                  const Pose<D>& pose, float margin, const QueryFilter& filter) {
   std::vector<QueryHit<D>> hits;
-  const Core<D> core = core_of(shape_of(probe), pose.rotation, Vec<D>::zero());
+  const Core<D> core = core_of(shape_of(probe), pose.rotation, Vec<D>::zero(), state.polyhedra);
   Core<D> reach = core;
   reach.radius += max(margin, 0.0f);
   const auto test = [&](const Shape<D>& shape, const Pose<D>& relative) {
-    const Core<D> other = core_of(shape, relative.rotation, relative.position);
+    const Core<D> other = core_of(shape, relative.rotation, relative.position, state.polyhedra);
     const Separation<D> between = separation_of(other, core);
     if (!(between.distance < margin)) return;
     // The free side, whatever neighbours a segment has.

@@ -14,7 +14,7 @@ std::vector<QueryHit<D>> ray_cast(const WorldState<D>& state, const Vec<D>& from
   point.vertices[0] = Vec<D>::zero();
   const Vec<D> translation = to - from;
   const auto cast = [&](const Shape<D>& shape, const Pose<D>& relative) {
-    const Core<D> core = core_of(shape, relative.rotation, relative.position);
+    const Core<D> core = core_of(shape, relative.rotation, relative.position, state.polyhedra);
     const Separation<D> start = separation_of(core, point);
     if (start.distance < 0.0f && allows(core, start.normal)) {
       const Vec<D> normal = normalized_or(-translation, start.normal);

@@ -1,9 +1,33 @@
 #include "solver/queries/separation.hpp"
 
+#include "solver/collision/solid.hpp"
+
 namespace cycloid::solver {
 
+static void place_vertices(const Shape<2>& shape, const Rotation<2>& rotation,
+                           const Vec<2>& position, const Polyhedra&, Core<2>& core) {
+  core.count = shape.vertex_count;
+  const std::uint32_t used = core.one_sided() ? 4 : core.count;
+  for (std::uint32_t i = 0; i < used; ++i) {
+    core.vertices[i] = position + rotate(rotation, shape.vertices[i]);
+    core.normals[i] = rotate(rotation, shape.normals[i]);
+  }
+}
+static void place_vertices(const Shape<3>& shape, const Rotation<3>& rotation,
+                           const Vec<3>& position, const Polyhedra& polyhedra, Core<3>& core) {
+  core.count = shape.vertex_count;
+  for (std::uint32_t i = 0; i < core.count; ++i)
+    core.vertices[i] = position + rotate(rotation, shape.vertices[i]);
+  if (shape.kind == ShapeKind::kBall || shape.kind == ShapeKind::kCapsule) return;
+  Solid solid;
+  place(shape, polyhedra, rotation, position, solid);
+  core.count = solid.vertex_count;
+  for (std::uint32_t i = 0; i < core.count; ++i) core.vertices[i] = solid.vertices[i];
+}
+
 template <int D>
-Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>& position) {
+Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>& position,
+                const Polyhedra& polyhedra) {
   Core<D> core{};
   core.kind = shape.kind;
   core.radius = shape.radius;
@@ -13,12 +37,7 @@ Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>
     core.offset = shape.offset + dot(core.normal, position);
     return core;
   }
-  core.count = shape.vertex_count;
-  const std::uint32_t used = core.one_sided() ? 4 : core.count;
-  for (std::uint32_t i = 0; i < used; ++i) {
-    core.vertices[i] = position + rotate(rotation, shape.vertices[i]);
-    core.normals[i] = rotate(rotation, shape.normals[i]);
-  }
+  place_vertices(shape, rotation, position, polyhedra, core);
   return core;
 }
 
@@ -213,8 +232,8 @@ bool allows(const Core<3>&, const Vec<3>&) {
   return true;
 }
 
-template Core<2> core_of(const Shape<2>&, const Rotation<2>&, const Vec<2>&);
-template Core<3> core_of(const Shape<3>&, const Rotation<3>&, const Vec<3>&);
+template Core<2> core_of(const Shape<2>&, const Rotation<2>&, const Vec<2>&, const Polyhedra&);
+template Core<3> core_of(const Shape<3>&, const Rotation<3>&, const Vec<3>&, const Polyhedra&);
 template Separation<2> separation_of(const Core<2>&, const Core<2>&);
 template Separation<3> separation_of(const Core<3>&, const Core<3>&);
 

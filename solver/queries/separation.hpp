@@ -25,7 +25,8 @@ struct Core {
 };
 
 template <int D>
-Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>& position);
+Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>& position,
+                const Polyhedra& polyhedra);
 
 /// How far two shapes are apart, and where.
 template <int D>

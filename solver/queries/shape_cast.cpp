@@ -153,9 +153,9 @@ std::vector<QueryHit<D>> shape_cast(const WorldState<D>& state, const Probe<D>& 
                                     const Pose<D>& pose, const Vec<D>& translation,
                                     const QueryFilter& filter) {
   std::vector<QueryHit<D>> hits;
-  const Core<D> moving = core_of(shape_of(probe), pose.rotation, Vec<D>::zero());
+  const Core<D> moving = core_of(shape_of(probe), pose.rotation, Vec<D>::zero(), state.polyhedra);
   const auto cast = [&](const Shape<D>& shape, const Pose<D>& relative) {
-    const Core<D> core = core_of(shape, relative.rotation, relative.position);
+    const Core<D> core = core_of(shape, relative.rotation, relative.position, state.polyhedra);
     const Separation<D> start = separation_of(core, moving);
     if (start.distance <= 0.0f && allows(core, start.normal)) {
       if (!(dot(start.normal, translation) < 0.0f)) return;

@@ -42,11 +42,11 @@ struct Mover {
 
 template <int D>
 static Mover<D> mover_at(const Shape<D>& shape, const BodySweep<D>& sweep, const Vec<D>& offset,
-                         float fraction) {
+                         float fraction, const Polyhedra& polyhedra) {
   // Relative to where body a starts, so that the world position costs no digits.
   const Vec<D> centre = offset + fraction * sweep.translation;
   const Rotation<D> rotation = pose_at(sweep, fraction).rotation;
-  Mover<D> mover{core_of(shape, rotation, centre),
+  Mover<D> mover{core_of(shape, rotation, centre, polyhedra),
                  centre,
                  sweep.translation,
                  sweep.turn,
@@ -123,7 +123,8 @@ static bool never_meet(const Shape<D>& a, const Shape<D>& b) {
 
 template <int D>
 Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shape<D>& b,
-                      const BodySweep<D>& sweep_b, float target, float tolerance) {
+                      const BodySweep<D>& sweep_b, float target, float tolerance,
+                      const Polyhedra& polyhedra) {
   constexpr int kSteps = 64;
   if (never_meet(a, b)) return {};
   const Vec<D> a_to_b = sweep_b.start.position - sweep_a.start.position;
@@ -132,8 +133,8 @@ Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shap
   float fraction = 0.0f;
   bool stopped_before = false;
   for (int i = 0; i < kSteps; ++i) {
-    const Mover<D> mover_a = mover_at(a, sweep_a, Vec<D>::zero(), fraction);
-    const Mover<D> mover_b = mover_at(b, sweep_b, a_to_b, fraction);
+    const Mover<D> mover_a = mover_at(a, sweep_a, Vec<D>::zero(), fraction, polyhedra);
+    const Mover<D> mover_b = mover_at(b, sweep_b, a_to_b, fraction, polyhedra);
     const float speed_max = length(sweep_b.translation - sweep_a.translation) +
                             mover_a.turn_rate * mover_a.reach + mover_b.turn_rate * mover_b.reach;
     if (speed_max <= 1.0e-12f) return {};
@@ -166,8 +167,8 @@ Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shap
 template Pose<2> pose_at(const BodySweep<2>&, float);
 template Pose<3> pose_at(const BodySweep<3>&, float);
 template Impact time_of_impact(const Shape<2>&, const BodySweep<2>&, const Shape<2>&,
-                               const BodySweep<2>&, float, float);
+                               const BodySweep<2>&, float, float, const Polyhedra&);
 template Impact time_of_impact(const Shape<3>&, const BodySweep<3>&, const Shape<3>&,
-                               const BodySweep<3>&, float, float);
+                               const BodySweep<3>&, float, float, const Polyhedra&);
 
 }  // namespace cycloid::solver

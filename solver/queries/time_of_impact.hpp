@@ -41,9 +41,11 @@ struct Impact {
 /// vertices is bounded from below by a parabola (its speed now, and spin^2 x radius as the greatest
 /// change of it), so a step never leads past the impact, and steps converge quadratically.
 /// Source: Mirtich, "Impulse-based Dynamic Simulation" (1996), 2.3.2, with speeds per vertex.
+/// @param polyhedra  of the world that both shapes belong to.
 /// @pre 0 < tolerance < target, finite sweeps.
 template <int D>
 Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shape<D>& b,
-                      const BodySweep<D>& sweep_b, float target, float tolerance);
+                      const BodySweep<D>& sweep_b, float target, float tolerance,
+                      const Polyhedra& polyhedra);
 
 }  // namespace cycloid::solver

@@ -13,7 +13,7 @@ static Manifold<D> collide_pair(const StepContext<D>& context, const WorldState<
   const float margin =
       context.tuning.speculative_distance + context.tick_s * length(b.velocity - a.velocity);
   return collide(shape_a, Pose<D>{a.position, a.rotation}, shape_b, Pose<D>{b.position, b.rotation},
-                 margin);
+                 margin, state.polyhedra);
 }
 
 /// The impulses of the point with the same feature, so that a contact which persists starts from

@@ -17,7 +17,7 @@ static void list_jointed_bodies(const WorldState<D>& state, StepScratch<D>& scra
 
 /// A body reaches as far as it flies in a tick, so that what it will hit is among the pairs.
 template <int D>
-static float reach_of(const StepContext<D>& context, const Body<D>& body) {
+static float flight_of(const StepContext<D>& context, const Body<D>& body) {
   return context.tuning.speculative_distance + context.tick_s * length(body.velocity);
 }
 
@@ -35,7 +35,7 @@ static void list_leaves(const StepContext<D>& context, const WorldState<D>& stat
     }
     const Body<D>& body = state.bodies[shape.body];
     const Pose<D> pose{body.position, body.rotation};
-    scratch.leaves.push_back({bounds_of(shape, pose, reach_of(context, body)), s});
+    scratch.leaves.push_back({bounds_of(shape, pose, flight_of(context, body)), s});
   }
 }
 

@@ -62,7 +62,8 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
     if (scratch.awake[a.body] == 0 && scratch.awake[b.body] == 0) continue;
     const Pose<D> pose_a{state.bodies[a.body].position, state.bodies[a.body].rotation};
     const Pose<D> pose_b{state.bodies[b.body].position, state.bodies[b.body].rotation};
-    Manifold<D> manifold = collide(a, pose_a, b, pose_b, context.tuning.speculative_distance);
+    const Manifold<D> manifold =
+        collide(a, pose_a, b, pose_b, context.tuning.speculative_distance, state.polyhedra);
     // Neither body has moved since the contact was kept, so its points and impulses still belong to
     // each other; a contact that is gone all the same is solved as one without points.
     if (manifold.point_count == contact.point_count) scratch.manifolds[i] = manifold;

@@ -36,8 +36,9 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
   // Near enough that the next tick finds the contact, far enough that this one did not touch.
   const float target = min(max(0.5f * context.tuning.slop, 1.0e-4f),
                            max(context.tuning.speculative_distance, 1.0e-4f));
-  const Impact impact = time_of_impact(a, sweep_of(context, state, scratch, a.body),
-                                       state.shapes[shape], sweep, target, 0.25f * target);
+  const Impact impact =
+      time_of_impact(a, sweep_of(context, state, scratch, a.body), state.shapes[shape], sweep,
+                     target, 0.25f * target, state.polyhedra);
   return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
 }
 

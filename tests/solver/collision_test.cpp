@@ -23,7 +23,7 @@ Pose<D> pose(Vec<D> position) {
 TEST(Collide, FlatBoxesMeetInTwoPointsWithTheNormalFromAToB) {
   const Shape<2> a = record(box(0.5f, 0.5f));
   const Manifold<2> manifold =
-      collide(a, pose<2>({{0.0f, 0.0f}}), a, pose<2>({{0.25f, 0.99f}}), 0.02f);
+      collide(a, pose<2>({{0.0f, 0.0f}}), a, pose<2>({{0.25f, 0.99f}}), 0.02f, {});
   ASSERT_EQ(manifold.point_count, 2u);
   EXPECT_FLOAT_EQ(manifold.normal[0], 0.0f);
   EXPECT_FLOAT_EQ(manifold.normal[1], 1.0f);
@@ -37,8 +37,8 @@ TEST(Collide, SwappingTheShapesMirrorsTheManifold) {
   const Shape<2> b = record(capsule(0.4f, 0.2f));
   const Pose<2> pose_a = pose<2>({{0.0f, 0.0f}});
   const Pose<2> pose_b = {{{0.1f, 0.65f}}, turned(0.1f)};
-  const Manifold<2> forth = collide(a, pose_a, b, pose_b, 0.1f);
-  const Manifold<2> back = collide(b, pose_b, a, pose_a, 0.1f);
+  const Manifold<2> forth = collide(a, pose_a, b, pose_b, 0.1f, {});
+  const Manifold<2> back = collide(b, pose_b, a, pose_a, 0.1f, {});
   ASSERT_EQ(forth.point_count, back.point_count);
   ASSERT_GT(forth.point_count, 0u);
   EXPECT_NEAR(forth.normal[0], -back.normal[0], 1.0e-6f);
@@ -48,7 +48,7 @@ TEST(Collide, SwappingTheShapesMirrorsTheManifold) {
 TEST(Collide, CapsulesInOneLineMeetAtTheirEnds) {
   const Shape<2> a = record(capsule(1.0f, 0.5f));
   const Manifold<2> manifold =
-      collide(a, pose<2>({{0.0f, 0.0f}}), a, pose<2>({{2.95f, 0.0f}}), 0.02f);
+      collide(a, pose<2>({{0.0f, 0.0f}}), a, pose<2>({{2.95f, 0.0f}}), 0.02f, {});
   ASSERT_EQ(manifold.point_count, 1u);
   EXPECT_NEAR(manifold.normal[0], 1.0f, 1.0e-6f);
   EXPECT_NEAR(manifold.points[0].separation, -0.05f, 1.0e-5f);
@@ -57,7 +57,7 @@ TEST(Collide, CapsulesInOneLineMeetAtTheirEnds) {
 TEST(Collide, CornersOfSeparatedBoxesMeetAlongTheLineBetweenThem) {
   const Shape<2> a = record(box(0.5f, 0.5f));
   const Manifold<2> manifold =
-      collide(a, pose<2>({{0.0f, 0.0f}}), a, pose<2>({{1.03f, 1.04f}}), 0.1f);
+      collide(a, pose<2>({{0.0f, 0.0f}}), a, pose<2>({{1.03f, 1.04f}}), 0.1f, {});
   ASSERT_EQ(manifold.point_count, 1u);
   EXPECT_NEAR(manifold.points[0].separation, 0.05f, 1.0e-5f);
   EXPECT_NEAR(manifold.normal[0], 0.6f, 1.0e-3f);
@@ -106,8 +106,8 @@ TEST(Collide, ChainIsOneSided) {
   const Shape<2> segment = record(def);
   const Shape<2> round = record(ball<2>(0.5f));
   const Pose<2> origin = pose<2>({{0.0f, 0.0f}});
-  EXPECT_EQ(collide(segment, origin, round, pose<2>({{0.0f, 0.45f}}), 0.02f).point_count, 1u);
-  EXPECT_EQ(collide(segment, origin, round, pose<2>({{0.0f, -0.45f}}), 0.02f).point_count, 0u);
+  EXPECT_EQ(collide(segment, origin, round, pose<2>({{0.0f, 0.45f}}), 0.02f, {}).point_count, 1u);
+  EXPECT_EQ(collide(segment, origin, round, pose<2>({{0.0f, -0.45f}}), 0.02f, {}).point_count, 0u);
 }
 
 // Distances against an independent dense sampling of both outlines, in double.
@@ -153,7 +153,7 @@ TEST(Collide, RandomHullsAgreeWithASampledDistance) {
     if (nearest < 0.04 || nested) continue;
     ++apart;
     const double expected = nearest - (a.radius + b.radius);
-    const Manifold<2> manifold = collide(a, pose_a, b, pose_b, 4.0f);
+    const Manifold<2> manifold = collide(a, pose_a, b, pose_b, 4.0f, {});
     ASSERT_GT(manifold.point_count, 0u) << "trial " << trial;
     float least = 4.0f;
     for (std::uint32_t i = 0; i < manifold.point_count; ++i)
@@ -165,8 +165,8 @@ TEST(Collide, RandomHullsAgreeWithASampledDistance) {
 
 TEST(Collide, ConcentricBallsHaveADefinedNormal) {
   const Shape<3> round = record(ball<3>(0.5f));
-  const Manifold<3> manifold =
-      collide(round, pose<3>({{1.0f, 2.0f, 3.0f}}), round, pose<3>({{1.0f, 2.0f, 3.0f}}), 0.02f);
+  const Manifold<3> manifold = collide(round, pose<3>({{1.0f, 2.0f, 3.0f}}), round,
+                                       pose<3>({{1.0f, 2.0f, 3.0f}}), 0.02f, {});
   ASSERT_EQ(manifold.point_count, 1u);
   EXPECT_EQ(manifold.normal[1], 1.0f);
   EXPECT_EQ(manifold.points[0].separation, -1.0f);

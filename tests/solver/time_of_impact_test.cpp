@@ -117,22 +117,22 @@ struct Pair {
   double gap_at(double fraction) const {
     return gap(outline_at(a, sweep_a, fraction), outline_at(b, sweep_b, fraction));
   }
-  Impact impact() const { return time_of_impact(a, sweep_a, b, sweep_b, kTarget, kTolerance); }
+  Impact impact() const { return time_of_impact(a, sweep_a, b, sweep_b, kTarget, kTolerance, {}); }
 };
 
 TEST(TimeOfImpact, OfStraightWaysIsExact) {
   const Shape<2> ball = ball_shape<2>(0.05f);
   const Shape<2> wall = box_shape(0.01f, 10.0f);
   const Impact hit = time_of_impact(ball, sweep<2>({{0, 0}}, {{1000, 0}}), wall,
-                                    sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance);
+                                    sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance, {});
   ASSERT_TRUE(hit.hit);
   EXPECT_NEAR(hit.fraction * 1000, 500 - 0.01 - 0.05 - 0.009, 0.0011);
   const Impact away = time_of_impact(ball, sweep<2>({{0, 0}}, {{-1000, 0}}), wall,
-                                     sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance);
+                                     sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance, {});
   EXPECT_FALSE(away.hit);
   EXPECT_EQ(away.fraction, 1.0f);
   const Impact beside = time_of_impact(ball, sweep<2>({{0, 10.07f}}, {{1000, 0}}), wall,
-                                       sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance);
+                                       sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance, {});
   EXPECT_FALSE(beside.hit);
 }
 
@@ -168,7 +168,7 @@ TEST(TimeOfImpact, OfShapesThatStartTooCloseIsZeroOnlyOnTheWayIn) {
   const BodySweep<2> rest = sweep<2>({{0, 0}}, {{0, 0}});
   const auto from = [&](float height, Vec<2> way) {
     return time_of_impact(floor, rest, box, sweep<2>({{0, 1.5f + height}}, way), kTarget,
-                          kTolerance);
+                          kTolerance, {});
   };
   for (const float height : {-0.02f, 0.0f, 0.0085f, 0.0095f}) {
     const Impact down = from(height, {{0, -0.5f}});
@@ -188,8 +188,8 @@ TEST(TimeOfImpact, MeetsSegmentsFromTheFreeSideAlone) {
   for (const Shape<2>& shape : {ball_shape<2>(0.1f), box_shape(0.1f, 0.1f)}) {
     const auto fall = [&](float x, float from, float to, bool swapped, float turn) {
       const BodySweep<2> way = sweep<2>({{x, from}}, {{0, to - from}}, {{turn}});
-      return swapped ? time_of_impact(shape, way, segment, rest, kTarget, kTolerance)
-                     : time_of_impact(segment, rest, shape, way, kTarget, kTolerance);
+      return swapped ? time_of_impact(shape, way, segment, rest, kTarget, kTolerance, {})
+                     : time_of_impact(segment, rest, shape, way, kTarget, kTolerance, {});
     };
     for (const bool swapped : {false, true}) {
       const Impact down = fall(0.3f, 2.0f, -2.0f, swapped, 0.0f);
@@ -202,7 +202,7 @@ TEST(TimeOfImpact, MeetsSegmentsFromTheFreeSideAlone) {
     }
   }
   const BodySweep<2> fall = sweep<2>({{0, 1}}, {{0, -2}});
-  EXPECT_FALSE(time_of_impact(segment, rest, segment, fall, kTarget, kTolerance).hit);
+  EXPECT_FALSE(time_of_impact(segment, rest, segment, fall, kTarget, kTolerance, {}).hit);
 }
 
 TEST(TimeOfImpact, StumblesOverNoJointOfAFlatChain) {
@@ -211,12 +211,12 @@ TEST(TimeOfImpact, StumblesOverNoJointOfAFlatChain) {
   const BodySweep<2> slide = sweep<2>({{-2, 0.109f}}, {{3, 0}});
   // Against an end alone the face of the box stops; where a neighbour leads up to it, it does not.
   const Shape<2> box = box_shape(0.1f, 0.1f);
-  EXPECT_TRUE(time_of_impact(segment, rest, box, slide, kTarget, kTolerance).hit);
+  EXPECT_TRUE(time_of_impact(segment, rest, box, slide, kTarget, kTolerance, {}).hit);
   segment.ghosts = 2;
   segment.vertices[3] = {{-2, 0}};
-  EXPECT_FALSE(time_of_impact(segment, rest, box, slide, kTarget, kTolerance).hit);
+  EXPECT_FALSE(time_of_impact(segment, rest, box, slide, kTarget, kTolerance, {}).hit);
   const BodySweep<2> fall = sweep<2>({{-1, 1}}, {{3, -2}});
-  EXPECT_TRUE(time_of_impact(segment, rest, box, fall, kTarget, kTolerance).hit);
+  EXPECT_TRUE(time_of_impact(segment, rest, box, fall, kTarget, kTolerance, {}).hit);
 }
 
 TEST(TimeOfImpact, MeetsHalfSpacesAndWorksInSpace) {
@@ -225,7 +225,7 @@ TEST(TimeOfImpact, MeetsHalfSpacesAndWorksInSpace) {
   plane.normal = {{0, 1}};
   const BodySweep<2> rod = sweep<2>({{0, 0.9f}}, {{0, 0}}, {{1.5f}});
   const Impact tip = time_of_impact(box_shape(1, 0.01f), rod, plane, sweep<2>({{0, 0}}, {{0, 0}}),
-                                    kTarget, kTolerance);
+                                    kTarget, kTolerance, {});
   ASSERT_TRUE(tip.hit);
   const double angle = 1.5 * tip.fraction;
   EXPECT_NEAR(0.9 - std::sin(angle) - 0.01 * std::cos(angle), 0.009, 0.0011);
@@ -234,7 +234,7 @@ TEST(TimeOfImpact, MeetsHalfSpacesAndWorksInSpace) {
   offset.vertices[0] = {{1, 0, 0}};
   const Impact swung =
       time_of_impact(offset, sweep<3>({{0, 0, 0}}, {{0, 0, 0}}, {{0, 0, 2}}), ball_shape<3>(0.3f),
-                     sweep<3>({{0, 1, 0}}, {{0, 0, 0}}), kTarget, kTolerance);
+                     sweep<3>({{0, 1, 0}}, {{0, 0, 0}}), kTarget, kTolerance, {});
   ASSERT_TRUE(swung.hit);
   const double turned = 2.0 * swung.fraction;
   EXPECT_NEAR(std::hypot(std::cos(turned), 1 - std::sin(turned)), 0.509, 0.0011);
