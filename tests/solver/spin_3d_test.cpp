@@ -72,7 +72,10 @@ static std::vector<double> flips_of(World<3>& world, BodyId id, int ticks) {
 }
 
 TEST(IntermediateAxis, FlipsWithThePeriodOfEulersEquations) {
-  for (const float disturbance : {0.01f, 0.1f}) {
+  // Near the separatrix the period answers to the logarithm of the disturbance, which rounding
+  // walks off: a hundredth of the spin keeps 2e-6 of the energy away from it.
+  const std::pair<float, double> cases[] = {{0.01f, 0.06}, {0.1f, 0.002}};
+  for (const auto& [disturbance, tolerance] : cases) {
     World<3> world = make_world(WorldDef<3>{});
     BodyDef<3> def;
     def.spin = {{disturbance, 5.0f, disturbance}};
@@ -82,8 +85,7 @@ TEST(IntermediateAxis, FlipsWithThePeriodOfEulersEquations) {
     ASSERT_GE(flips.size(), 5u) << disturbance;
     const double expected = flip_time(start);
     const double measured = (flips.back() - flips.front()) / static_cast<double>(flips.size() - 1);
-    // Near the separatrix the period answers to the logarithm of the smallest disturbance.
-    EXPECT_NEAR(measured / expected, 1.0, 0.01) << disturbance;
+    EXPECT_NEAR(measured / expected, 1.0, tolerance) << disturbance;
     const FreeMotion end = motion_of(world, id);
     EXPECT_NEAR(end.energy() / start.energy(), 1.0, 1e-3) << disturbance;
     EXPECT_NEAR(std::sqrt(end.momentum_square() / start.momentum_square()), 1.0, 1e-3);
