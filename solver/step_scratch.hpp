@@ -57,12 +57,17 @@ RowsFunction<D> find_rows_function(const std::vector<UserRows<D>>& registered,
 }
 
 /// Everything a step computes and throws away: nothing in here outlives a tick, so nothing in here
-/// is state. Kept between ticks only for its memory.
+/// is state. Kept between ticks only for its memory, and the tree of what never moves, which is a
+/// function of the state alone.
 template <int D>
 struct StepScratch {
   std::vector<typename BoundsTree<D>::Leaf> leaves;
-  BoundsTree<D> tree;
-  std::vector<std::uint32_t> unbounded;       ///< Half-spaces.
+  BoundsTree<D> tree;                    ///< Of the shapes of bodies that can move.
+  BoundsTree<D> static_tree;             ///< Of those that cannot; it may be a whole landscape.
+  std::vector<std::uint32_t> unbounded;  ///< Half-spaces.
+  /// Whether `static_tree` and `unbounded` are those of the state. Whoever makes, moves or removes
+  /// a static body, or puts another state in place, sets it back.
+  bool statics_are_listed = false;
   std::vector<std::uint64_t> jointed_bodies;  ///< Sorted pairs that do not collide.
   std::vector<std::vector<ShapePair>> found;  ///< By chunk of leaves.
   std::vector<ShapePair> pairs;               ///< Sorted by key.

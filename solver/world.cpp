@@ -74,6 +74,7 @@ std::optional<Fault> World<D>::fault() const {
 template <int D>
 void World<D>::restore(const WorldState<D>& from) {
   state_ = from;
+  scratch_->statics_are_listed = false;
   events_.clear();
   ended_.clear();
   statistics_ = {};

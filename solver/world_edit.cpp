@@ -113,6 +113,7 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
   state_.bodies[index] = body;
   // A static body may be put where others sleep, and neither would look for the other.
   if (body.inverse_mass == 0.0f) wake_all(state_);
+  if (body.kind == BodyKind::kStatic) scratch_->statics_are_listed = false;
   return BodyId{index, body.generation};
 }
 
@@ -139,6 +140,7 @@ Error World<D>::destroy_body(BodyId id) {
     if (contact.touching != 0) ended_.push_back(contact_event(state_, contact, false));
   }
   std::erase_if(state_.contacts, is_of_body);
+  if (state_.bodies[id.index].kind == BodyKind::kStatic) scratch_->statics_are_listed = false;
   for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone;) {
     const std::uint32_t next = state_.shapes[s].next;
     state_.shapes[s] = Shape<D>{};

@@ -75,6 +75,7 @@ Error World<D>::set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& r
   Body<D>& body = state_.bodies[id.index];
   body.rotation = normalized_or(rotation, rotation);
   body.position = position + rotate(body.rotation, body.local_center);
+  if (body.kind == BodyKind::kStatic) scratch_->statics_are_listed = false;
   // Nobody looks for the pairs of two bodies that rest, so what may touch it now has to look.
   wake_all(state_);
   return {};

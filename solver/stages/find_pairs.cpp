@@ -21,21 +21,35 @@ static float flight_of(const StepContext<D>& context, const Body<D>& body) {
   return context.tuning.speculative_distance + context.tick_s * length(body.velocity);
 }
 
+/// Their boxes are not widened, because those of all that may meet them are; so they stay the same
+/// as long as no static body comes, goes or is moved.
 template <int D>
-static void list_leaves(const StepContext<D>& context, const WorldState<D>& state,
-                        StepScratch<D>& scratch) {
+static void list_statics(const WorldState<D>& state, StepScratch<D>& scratch) {
+  if (scratch.statics_are_listed) return;
   scratch.leaves.clear();
   scratch.unbounded.clear();
   for (std::uint32_t s = 0; s < state.shapes.size(); ++s) {
     const Shape<D>& shape = state.shapes[s];
-    if (shape.kind == ShapeKind::kFree) continue;
-    if (shape.kind == ShapeKind::kHalfSpace) {
-      scratch.unbounded.push_back(s);
-      continue;
-    }
+    if (shape.kind == ShapeKind::kHalfSpace) scratch.unbounded.push_back(s);
+    if (shape.kind == ShapeKind::kFree || shape.kind == ShapeKind::kHalfSpace) continue;
     const Body<D>& body = state.bodies[shape.body];
+    if (body.kind != BodyKind::kStatic) continue;
+    scratch.leaves.push_back({bounds_of(shape, Pose<D>{body.position, body.rotation}, 0.0f), s});
+  }
+  scratch.static_tree.build(scratch.leaves);
+  scratch.statics_are_listed = true;
+}
+
+template <int D>
+static void list_leaves(const StepContext<D>& context, const WorldState<D>& state,
+                        StepScratch<D>& scratch) {
+  scratch.leaves.clear();
+  for (const Body<D>& body : state.bodies) {
+    if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
     const Pose<D> pose{body.position, body.rotation};
-    scratch.leaves.push_back({bounds_of(shape, pose, flight_of(context, body)), s});
+    const float flight = flight_of(context, body);
+    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next)
+      scratch.leaves.push_back({bounds_of(state.shapes[s], pose, flight), s});
   }
 }
 
@@ -43,9 +57,9 @@ static ShapePair ordered(std::uint32_t a, std::uint32_t b) {
   return a < b ? ShapePair{a, b} : ShapePair{b, a};
 }
 
-/// Pairs of the leaves in `range`: each with the half-spaces, and with the leaves it overlaps. Of
-/// two that both move, the lower rank reports the pair; a leaf that is static or asleep never
-/// looks.
+/// Pairs of the leaves in `range`: each with the half-spaces, with the static shapes and with the
+/// leaves it overlaps. Of two that both move, the lower rank reports the pair; a leaf that is
+/// asleep never looks.
 template <int D>
 static void find_in_range(const WorldState<D>& state, const StepScratch<D>& scratch, Range range,
                           std::vector<ShapePair>& found) {
@@ -59,6 +73,10 @@ static void find_in_range(const WorldState<D>& state, const StepScratch<D>& scra
     for (const std::uint32_t half_space : scratch.unbounded)
       if (may_touch(state, scratch, leaf.id, half_space))
         found.push_back(ordered(leaf.id, half_space));
+    scratch.static_tree.query(leaf.bounds, [&](int other_rank) {
+      const std::uint32_t other = scratch.static_tree.leaf(other_rank).id;
+      if (may_touch(state, scratch, leaf.id, other)) found.push_back(ordered(leaf.id, other));
+    });
     scratch.tree.query(leaf.bounds, [&](int other_rank) {
       const std::uint32_t other = scratch.tree.leaf(other_rank).id;
       if (other == leaf.id || (other_rank < rank && moving(other))) return;
@@ -67,16 +85,17 @@ static void find_in_range(const WorldState<D>& state, const StepScratch<D>& scra
   }
 }
 
-/// Every pair of shapes whose boxes, widened by the speculative distance and a tick's flight,
-/// overlap and that may touch.
+/// Every pair of shapes whose boxes overlap and that may touch; those of bodies that can move are
+/// widened by the speculative distance and a tick's flight.
 ///
-/// Reads shapes, bodies and joints; writes leaves, tree and pairs. Chunks of leaves write lists of
-/// their own, and the lists are sorted by shape slots at the end, so neither threads nor the shape
-/// of the tree show in the result.
+/// Reads shapes, bodies and joints; writes leaves, both trees and pairs. Chunks of leaves write
+/// lists of their own, and the lists are sorted by shape slots at the end, so neither threads nor
+/// the shape of the tree show in the result.
 template <int D>
 void find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch) {
   list_jointed_bodies(state, scratch);
+  list_statics(state, scratch);
   list_leaves(context, state, scratch);
   scratch.tree.build(scratch.leaves);
   const int chunks = (scratch.tree.size() + kPairGrain - 1) / kPairGrain;

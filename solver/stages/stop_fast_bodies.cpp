@@ -57,6 +57,7 @@ static float earliest_impact(const StepContext<D>& context, const WorldState<D>&
       first = min(first, fraction_of(context, state, scratch, s, other, sweep));
     };
     for (const std::uint32_t half_space : scratch.unbounded) meet(half_space);
+    scratch.static_tree.query(bounds, [&](int rank) { meet(scratch.static_tree.leaf(rank).id); });
     scratch.tree.query(bounds, [&](int rank) { meet(scratch.tree.leaf(rank).id); });
   }
   return first;
