@@ -89,7 +89,6 @@ Pair make_pair(const scenes::Scene& scene, bool sleep, Row& row) {
   const std::size_t ours_before = our_bytes;
   pair.ours = scenes::build<3>(scene, mistakes);
   row.bodies = pair.ours->world.body_count();
-  pair.ours->world.set_lanes(8);
   row.ours_bytes = static_cast<double>(our_bytes - ours_before);
   const std::size_t bullet_before = peers::BulletWorld::bytes();
   pair.bullet = std::make_unique<peers::BulletWorld>(*pair.ours, sleep);

@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "solver/collision/manifold.hpp"
 #include "solver/world.hpp"
 
 namespace cycloid::peers {

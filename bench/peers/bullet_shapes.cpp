@@ -15,7 +15,7 @@ static S* keep(std::unique_ptr<S> shape, BulletShapes& into) {
 static btTransform along_y(const solver::Vec<3>& from, const solver::Vec<3>& to) {
   const btVector3 span = to_bullet(to) - to_bullet(from);
   const btVector3 middle = 0.5f * (to_bullet(to) + to_bullet(from));
-  return {shortestArcQuat(btVector3(0, 1, 0), span.normalized()), middle};
+  return btTransform(shortestArcQuat(btVector3(0, 1, 0), span.normalized()), middle);
 }
 
 static btCollisionShape* make_hull(const solver::WorldState<3>& state,

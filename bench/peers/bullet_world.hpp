@@ -4,6 +4,7 @@
 #include <span>
 
 #include "scenes/build.hpp"
+#include "solver/collision/manifold.hpp"
 
 namespace cycloid::peers {
 
