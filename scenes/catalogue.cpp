@@ -33,6 +33,13 @@ static constexpr Generator kGenerators[] = {
     {"cloth", "cloth", "columns", 16, 3, 100, cloth},
     {"cloth-3d", "cloth-3d", "columns", 16, 3, 100, cloth_3d},
     {"bouncing", "bouncing", "discs", 20, 1, 100, bouncing},
+    {"stack-3d", "stack-10-3d", "count", 10, 1, 1000, stack_3d},
+    {"pyramid-3d", "pyramid-3d", "layers", 10, 1, 40, pyramid_3d},
+    {"wall", "wall", "courses", 12, 1, 100, wall},
+    {"arch-3d", "arch-3d", "stones", 13, 5, 101, arch_3d},
+    {"cubes", "cubes-901", "side", 30, 1, 100, cubes},
+    {"bridge-3d", "bridge-3d", "planks", 24, 2, 1000, bridge_3d},
+    {"ragdolls-3d", "ragdolls-3d", "count", 6, 1, 100, ragdolls_3d},
 };
 
 static Loaded mistake(std::string reason) {
@@ -121,8 +128,9 @@ Loaded load(const std::string& what) {
 }
 
 std::vector<Scene> generated_defaults() {
-  std::vector<Scene> scenes = {half_pipe(), newtons_cradle(), ragdoll_motors(), vehicle(),
-                               machines(),  beads(),          rolling(),        heavy_on_light()};
+  std::vector<Scene> scenes = {
+      half_pipe(), newtons_cradle(), ragdoll_motors(), vehicle(), machines(),  beads(),
+      rolling(),   heavy_on_light(), dzhanibekov(),    top(),     vehicle_3d()};
   for (Scene& scene : method_scenes()) scenes.push_back(std::move(scene));
   for (const Generator& generator : kGenerators)
     scenes.push_back(generator.make(generator.standard));

@@ -34,10 +34,27 @@ std::vector<Scene> method_scenes();
 Scene cloth(int columns);
 Scene cloth_3d(int columns);
 
+// In space.
+
+Scene stack_3d(int count);
+/// @param layers  of cubes, the lowest layers x layers, 1 to 40.
+Scene pyramid_3d(int layers);
+/// @param courses  of ten bricks, 1 to 100.
+Scene wall(int courses);
+Scene arch_3d(int stones);
+/// @param side  small cubes along either side of the field, 1 to 100.
+Scene cubes(int side);
+Scene dzhanibekov();
+Scene top();
+Scene vehicle_3d();
+Scene bridge_3d(int planks);
+Scene ragdolls_3d(int count);
+
 // Parts that several of them use.
 
 SceneShape box_shape(float half_x, float half_y);
 SceneShape ball_shape(float radius);
+SceneShape solid_box(const Triple& half);
 SceneShape capsule_shape(const Triple& from, const Triple& to, float radius);
 /// Solid to the right of its direction.
 SceneShape chain_shape(std::vector<Triple> points, bool loop);
@@ -54,6 +71,7 @@ Control force_control(std::uint32_t axis, const std::string& target, const Tripl
 Control motor_control(std::uint32_t axis, const std::string& target, float value);
 /// Gravity of 10 m/s^2 downwards and one material.
 Scene planar_scene(const char* name, const char* summary);
+Scene spatial_scene(const std::string& name, const char* summary);
 /// A seat whose button 0 throws a heavy ball from `position` with `velocity`, by script at ticks
 /// 120, 360, ...; at most four at once.
 void add_thrower(Scene& scene, const Triple& position, const Triple& velocity);

@@ -12,6 +12,13 @@ SceneShape box_shape(float half_x, float half_y) {
   return shape;
 }
 
+SceneShape solid_box(const Triple& half) {
+  SceneShape shape;
+  shape.kind = solver::ShapeKind::kBox;
+  shape.half = half;
+  return shape;
+}
+
 SceneShape ball_shape(float radius) {
   SceneShape shape;
   shape.radius = radius;
@@ -103,6 +110,12 @@ Scene planar_scene(const char* name, const char* summary) {
   scene.summary = summary;
   scene.gravity = {0.0f, -10.0f, 0.0f};
   scene.materials.push_back({"default", 0.6f, 0.0f});
+  return scene;
+}
+
+Scene spatial_scene(const std::string& name, const char* summary) {
+  Scene scene = planar_scene(name.c_str(), summary);
+  scene.dimension = 3;
   return scene;
 }
 
