@@ -121,8 +121,9 @@ Loaded load(const std::string& what) {
 }
 
 std::vector<Scene> generated_defaults() {
-  std::vector<Scene> scenes = {half_pipe(), newtons_cradle(), ragdoll_motors(), vehicle(),
-                               machines(),  beads(),          rolling(),        heavy_on_light()};
+  std::vector<Scene> scenes = {half_pipe(), newtons_cradle(), ragdoll_motors(),
+                               vehicle(),   machines(),       beads(),
+                               rolling(),   heavy_on_light(), character_course()};
   for (Scene& scene : method_scenes()) scenes.push_back(std::move(scene));
   for (const Generator& generator : kGenerators)
     scenes.push_back(generator.make(generator.standard));

@@ -201,33 +201,49 @@ static MoverState<D> willing(const Character<D>& character, const CharacterWish<
   return state;
 }
 
+/// Pushes a body, and gives the character what is left of the velocity it `wanted` in that
+/// direction: solver::move stops it as at a wall, but after an inelastic push both go on together.
 template <int D>
-static void push(solver::World<D>& world, const solver::MoverImpulse<D>& push) {
-  const Vec<D> arm = push.point - world.state().bodies[push.body.index].position;
-  // What is pushed beyond the bounds of a world stays as it is, the same everywhere.
-  (void)world.apply_impulse(push.body, push.impulse);
-  (void)world.apply_angular_impulse(push.body, solver::moment(arm, push.impulse));
+static void push(solver::World<D>& world, const solver::MoverImpulse<D>& given,
+                 const Vec<D>& wanted, const Vec<D>& up, MoverState<D>& state) {
+  const solver::Body<D>& body = world.state().bodies[given.body.index];
+  const Vec<D> arm = given.point - body.position;
+  const bool pushed = world.apply_impulse(given.body, given.impulse).ok() &&
+                      world.apply_angular_impulse(given.body, moment(arm, given.impulse)).ok();
+  // What would leave the bounds of a world stays as it is, the same everywhere.
+  const float strength = length(given.impulse);
+  if (!pushed || !(strength > 0.0f)) return;
+  const Vec<D> direction = (1.0f / strength) * given.impulse;
+  const float speed = dot(state.velocity + state.ground_velocity, direction);
+  const float common = solver::min(dot(wanted, direction),
+                                   dot(body.velocity + spin_cross(body.spin, arm), direction));
+  if (!(common > speed)) return;
+  state.velocity += (common - speed) * direction;
+  if (state.grounded) state.velocity -= dot(state.velocity, up) * up;
+}
+
+template <int D>
+static void move_character(Built<D>& built, std::size_t i, const CharacterWish<D>& wish) {
+  const Character<D>& character = built.characters[i];
+  const float dt = built.world.tick_s();
+  const Vec<D> half_fall = 0.5f * dt * character.gravity_scale * built.world.state().header.gravity;
+  const MoverState<D> before = character_state(built, i);
+  const MoverState<D> start = willing(character, wish, half_fall, dt, before);
+  const solver::MoverStep<D> step = move(built.world.state(), character.mover, start, dt);
+  MoverState<D> after = step.state;
+  const Vec<D> wanted = start.velocity + start.ground_velocity;
+  for (const solver::MoverImpulse<D>& impulse : step.impulses)
+    push(built.world, impulse, wanted, character.mover.up, after);
+  if (!after.grounded) after.velocity += half_fall;
+  if (set_character_state(built, i, after)) return;
+  MoverState<D> rest;
+  rest.position = before.position;
+  set_character_state(built, i, rest);
 }
 
 template <int D>
 void move_characters(Built<D>& built, std::span<const CharacterWish<D>> wishes) {
-  const float dt = built.world.tick_s();
-  for (std::size_t i = 0; i < built.characters.size(); ++i) {
-    const Character<D>& character = built.characters[i];
-    const MoverState<D> before = character_state(built, i);
-    const Vec<D> half_fall =
-        0.5f * dt * character.gravity_scale * built.world.state().header.gravity;
-    const MoverState<D> start = willing(character, wishes[i], half_fall, dt, before);
-    solver::MoverStep<D> step = move(built.world.state(), character.mover, start, dt);
-    if (!step.state.grounded) step.state.velocity += half_fall;
-    if (set_character_state(built, i, step.state)) {
-      for (const solver::MoverImpulse<D>& impulse : step.impulses) push(built.world, impulse);
-      continue;
-    }
-    MoverState<D> rest;
-    rest.position = before.position;
-    set_character_state(built, i, rest);
-  }
+  for (std::size_t i = 0; i < built.characters.size(); ++i) move_character(built, i, wishes[i]);
 }
 
 template Character<2> make_character(const SceneCharacter&, const std::string&,

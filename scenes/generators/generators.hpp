@@ -34,6 +34,11 @@ std::vector<Scene> method_scenes();
 Scene cloth(int columns);
 Scene cloth_3d(int columns);
 
+/// A character in the plane, walked by a seat past everything that it can and cannot do.
+Scene character_course();
+/// In space; not in the catalogue yet.
+Scene character_course_3d();
+
 // Parts that several of them use.
 
 SceneShape box_shape(float half_x, float half_y);
