@@ -99,7 +99,7 @@ Scene character_course() {
   seat.controls = {walk_control(0, "walker", {1.0f, 0.0f, 0.0f}), jump_control("walker")};
   // Against the steep slope, to the plateau, until the box has fallen, over the gap, onto the lift,
   // up, and to the wall.
-  seat.script = {say(1, 45, -1.0f, 0), say(45, 240, 1.0f, 0), say(268, 368, 1.0f, 0),
+  seat.script = {say(1, 30, -1.0f, 0), say(30, 241, 1.0f, 0), say(268, 368, 1.0f, 0),
                  say(268, 270, 1.0f, kJumpButton), say(474, 0, 1.0f, 0)};
   scene.seats = {seat};
   return scene;
