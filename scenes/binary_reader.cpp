@@ -126,6 +126,27 @@ class BinaryReader {
     read_all(from.pins(), to.pins);
   }
 
+  void read(const fb::Character& from, SceneCharacter& to) {
+    to.name = text(from.name());
+    to.position = triple(from.position());
+    to.lower = triple(from.lower());
+    to.upper = triple(from.upper());
+    to.radius = from.radius();
+    to.skin = from.skin();
+    to.up = triple(from.up());
+    to.slope_cos_min = from.slope_cos_min();
+    to.step_height = from.step_height();
+    to.push_mass = from.push_mass();
+    to.push_force_max = from.push_force_max();
+    to.gravity_scale = from.gravity_scale();
+    to.speed = from.speed();
+    to.acceleration = from.acceleration();
+    to.air_acceleration = from.air_acceleration();
+    to.jump_speed = from.jump_speed();
+    if (const fb::Filter* filter = from.filter())
+      to.filter = {filter->category(), filter->mask(), filter->group()};
+  }
+
   void read(const fb::Control& from, Control& to) {
     to.source = static_cast<Source>(from.source());
     to.index = from.index();
@@ -201,6 +222,7 @@ class BinaryReader {
     read_all(from.bodies(), to.bodies);
     read_all(from.joints(), to.joints);
     read_all(from.cloths(), to.cloths);
+    read_all(from.characters(), to.characters);
     read_all(from.prefabs(), to.prefabs);
     read_all(from.seats(), to.seats);
   }

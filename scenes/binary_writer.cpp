@@ -156,6 +156,29 @@ static std::unique_ptr<fb::ClothT> packed(const Cloth& from) {
   return to;
 }
 
+static std::unique_ptr<fb::CharacterT> packed(const SceneCharacter& from) {
+  auto to = std::make_unique<fb::CharacterT>();
+  to->name = from.name;
+  to->position = triple(from.position);
+  to->lower = triple(from.lower);
+  to->upper = triple(from.upper);
+  to->radius = from.radius;
+  to->skin = from.skin;
+  to->up = triple(from.up);
+  to->slope_cos_min = from.slope_cos_min;
+  to->step_height = from.step_height;
+  to->push_mass = from.push_mass;
+  to->push_force_max = from.push_force_max;
+  to->gravity_scale = from.gravity_scale;
+  to->speed = from.speed;
+  to->acceleration = from.acceleration;
+  to->air_acceleration = from.air_acceleration;
+  to->jump_speed = from.jump_speed;
+  to->filter =
+      std::make_unique<fb::Filter>(from.filter.category, from.filter.mask, from.filter.group);
+  return to;
+}
+
 static std::unique_ptr<fb::TuningT> packed(const solver::Tuning& from) {
   auto to = std::make_unique<fb::TuningT>();
   to->substeps = from.substeps;
@@ -215,6 +238,7 @@ std::vector<std::byte> to_binary(const Scene& scene) {
   pack_all(scene.bodies, to.bodies);
   pack_all(scene.joints, to.joints);
   pack_all(scene.cloths, to.cloths);
+  pack_all(scene.characters, to.characters);
   pack_all(scene.prefabs, to.prefabs);
   pack_all(scene.seats, to.seats);
   flatbuffers::FlatBufferBuilder builder;

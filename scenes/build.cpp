@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "scenes/characters.hpp"
 #include "scenes/weave.hpp"
 #include "solver/trig.hpp"
 
@@ -66,14 +67,14 @@ class Builder {
       complain(world_path(world.error()), world.error());
       return nullptr;
     }
-    built_ = std::make_unique<Built<D>>(Built<D>{std::move(world.value()), {}, {}});
+    built_ = std::make_unique<Built<D>>(Built<D>{std::move(world.value()), {}, {}, {}, 0});
     for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
     for (std::size_t i = 0; i < scene_.joints.size(); ++i) add_joint(i);
     for (std::size_t i = 0; i < scene_.cloths.size(); ++i) add_cloth(i);
     for (std::size_t i = 0; i < scene_.prefabs.size(); ++i) add_prefab(i);
+    for (std::size_t i = 0; i < scene_.characters.size(); ++i) add_character(i);
     for (std::size_t i = 0; i < scene_.seats.size(); ++i) add_seat(i);
-    const Error error = built_->world.resize_registers(registers_);
-    if (!error.ok()) complain("/limits/registers", error);
+    add_registers();
     return mistakes_.size() == before ? std::move(built_) : nullptr;
   }
 
@@ -278,6 +279,27 @@ class Builder {
     built_->prefabs.push_back(std::move(prefab));
   }
 
+  void add_character(std::size_t i) {
+    const SceneCharacter& from = scene_.characters[i];
+    const std::string path = at("/characters", i);
+    built_->characters.push_back(make_character<D>(from, path, mistakes_));
+    if (from.name.empty()) return;
+    if (!characters_.emplace(from.name, i).second)
+      complain(path + "/name", "is the name of an earlier character: '" + from.name + "'");
+  }
+
+  /// Those of the seats are counted by now; the characters' come after them.
+  void add_registers() {
+    for (Character<D>& character : built_->characters) {
+      character.first_register = registers_;
+      registers_ += kCharacterRegisters<D>;
+    }
+    built_->register_count = registers_;
+    const Error error = built_->world.resize_registers(registers_);
+    if (!error.ok()) return complain("/limits/registers", error);
+    start_characters(*built_);
+  }
+
   void add_seat(std::size_t i) {
     const std::string path = at("/seats", i);
     BoundSeat& seat = built_->seats.emplace_back();
@@ -314,6 +336,14 @@ class Builder {
         registers_ += 1 + 2 * control.limit;
         break;
       }
+      case Effect::kWalk:
+      case Effect::kJump: {
+        const auto found = characters_.find(control.target);
+        if (found == characters_.end())
+          return complain(path + "/target", "names no character: '" + control.target + "'");
+        bound.character = found->second;
+        break;
+      }
       default:
         return complain(path + "/effect", "is unknown");
     }
@@ -327,6 +357,7 @@ class Builder {
   std::map<std::string, std::pair<solver::JointId, std::size_t>> joints_;
   solver::BodyId anchor_body_;
   std::map<std::string, std::size_t> prefabs_;
+  std::map<std::string, std::size_t> characters_;
   std::uint32_t registers_ = 0;
 };
 

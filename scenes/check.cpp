@@ -26,7 +26,8 @@ static void check_control(const Control& control, const std::string& path,
   if (!axis && control.source != Source::kButton) complain("source", "has to be axis or button");
   if (control.index >= (axis ? static_cast<std::uint32_t>(kAxes) : 16u))
     complain("index", axis ? "has to be 0 to 3" : "has to be 0 to 15");
-  const bool once = control.effect == Effect::kImpulse || control.effect == Effect::kSpawn;
+  const bool once = control.effect == Effect::kImpulse || control.effect == Effect::kSpawn ||
+                    control.effect == Effect::kJump;
   if (once && axis) complain("source", "has to be a button: this effect happens once per press");
   if (!are_within(control.value, 1.0e9f)) complain("value", "is out of range");
   if (!are_within(control.position, 1.0e6f)) complain("position", "is out of range");

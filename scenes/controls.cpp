@@ -1,5 +1,7 @@
 #include "scenes/controls.hpp"
 
+#include "scenes/characters.hpp"
+
 namespace cycloid::scenes {
 
 /// Whether a refused call may be passed over: the world is full, or the target is gone. Both are
@@ -63,7 +65,8 @@ static void spawn(Built<D>& built, const BoundControl& bound) {
 }
 
 template <int D>
-static void apply(Built<D>& built, const BoundControl& bound, float amount, bool pressed) {
+static void apply(Built<D>& built, const BoundControl& bound, float amount, bool pressed,
+                  std::vector<CharacterWish<D>>& wishes) {
   solver::World<D>& world = built.world;
   switch (bound.control.effect) {
     case Effect::kForce:
@@ -82,6 +85,12 @@ static void apply(Built<D>& built, const BoundControl& bound, float amount, bool
     case Effect::kSpawn:
       if (pressed) spawn(built, bound);
       break;
+    case Effect::kWalk:
+      wishes[bound.character].walk += scaled<D>(bound.control.value, amount);
+      break;
+    case Effect::kJump:
+      if (pressed) wishes[bound.character].jump = true;
+      break;
     default:
       break;
   }
@@ -89,16 +98,18 @@ static void apply(Built<D>& built, const BoundControl& bound, float amount, bool
 
 template <int D>
 void apply_controls(Built<D>& built, std::span<const SeatInput> inputs) {
+  std::vector<CharacterWish<D>> wishes(built.characters.size());
   for (std::uint32_t seat = 0; seat < inputs.size(); ++seat) {
     const std::uint32_t before = built.world.registers()[seat];
     const std::uint32_t now = inputs[seat].buttons;
     for (const BoundControl& bound : built.seats[seat].controls) {
       const std::uint32_t bit = 1u << (bound.control.index & 15u);
       const bool pressed = bound.control.source == Source::kButton && (now & ~before & bit) != 0;
-      apply(built, bound, level(bound.control, inputs[seat]), pressed);
+      apply(built, bound, level(bound.control, inputs[seat]), pressed, wishes);
     }
     allow(built.world.set_register(seat, now));
   }
+  move_characters<D>(built, wishes);
 }
 
 template void apply_controls(Built<2>&, std::span<const SeatInput>);

@@ -95,7 +95,9 @@ struct Names<Effect> {
       {"torque", Effect::kTorque},
       {"motor_speed", Effect::kMotorSpeed},
       {"impulse", Effect::kImpulse},
-      {"spawn", Effect::kSpawn}};
+      {"spawn", Effect::kSpawn},
+      {"walk", Effect::kWalk},
+      {"jump", Effect::kJump}};
 };
 template <>
 struct Names<Frame> {
@@ -207,6 +209,27 @@ void fields(Cloth& c, F&& f) {
 }
 
 template <class F>
+void fields(SceneCharacter& c, F&& f) {
+  f("name", c.name);
+  f("position", c.position);
+  f("lower", c.lower);
+  f("upper", c.upper);
+  f("radius", c.radius);
+  f("skin", c.skin);
+  f("up", c.up);
+  f("slope_cos_min", c.slope_cos_min);
+  f("step_height", c.step_height);
+  f("push_mass", c.push_mass);
+  f("push_force_max", c.push_force_max);
+  f("gravity_scale", c.gravity_scale);
+  f("speed", c.speed);
+  f("acceleration", c.acceleration);
+  f("air_acceleration", c.air_acceleration);
+  f("jump_speed", c.jump_speed);
+  f("filter", c.filter);
+}
+
+template <class F>
 void fields(Control& c, F&& f) {
   f("source", c.source);
   f("index", c.index);
@@ -292,6 +315,7 @@ void fields(Scene& s, F&& f) {
   f("bodies", s.bodies);
   f("joints", s.joints);
   f("cloths", s.cloths);
+  f("characters", s.characters);
   f("prefabs", s.prefabs);
   f("seats", s.seats);
 }

@@ -109,8 +109,40 @@ struct Cloth {
   std::vector<ClothPin> pins;
 };
 
+/// A ball or a capsule that a seat walks and jumps: solver::move with a will. It does not turn, is
+/// no body, meets no other character, and pushes dynamic bodies. What it carries from tick to tick
+/// lies in the world's registers.
+struct SceneCharacter {
+  std::string name;                   ///< Needed only where a control refers to it.
+  Triple position{};                  ///< At tick 0, world, m.
+  Triple lower{0.0f, 0.3f, 0.0f};     ///< End of the capsule's segment, from the position, m.
+  Triple upper{0.0f, 1.5f, 0.0f};     ///< The other; equal to `lower`: a ball.
+  float radius = 0.3f;                ///< m.
+  float skin = 0.01f;                 ///< m of distance kept; at most half of the radius.
+  Triple up{0.0f, 1.0f, 0.0f};        ///< Unit.
+  float slope_cos_min = 0.70710678f;  ///< Walkable where dot(normal, up) is at least this.
+  float step_height = 0.35f;          ///< m, climbed and followed downwards at most.
+  float push_mass = 80.0f;            ///< kg with which dynamic bodies are pushed.
+  float push_force_max = 1000.0f;     ///< N, per contact.
+  float gravity_scale = 1.0f;
+  float speed = 4.0f;              ///< m/s, of a walk at full axis.
+  float acceleration = 40.0f;      ///< m/s^2 towards the wanted velocity, on the ground.
+  float air_acceleration = 10.0f;  ///< m/s^2, off it.
+  float jump_speed = 5.0f;         ///< m/s along `up`.
+  solver::Filter filter;
+};
+
 enum class Source : std::uint32_t { kUnknown = 0, kAxis, kButton };
-enum class Effect : std::uint32_t { kUnknown = 0, kForce, kTorque, kMotorSpeed, kImpulse, kSpawn };
+enum class Effect : std::uint32_t {
+  kUnknown = 0,
+  kForce,
+  kTorque,
+  kMotorSpeed,
+  kImpulse,
+  kSpawn,
+  kWalk,
+  kJump
+};
 enum class Frame : std::uint32_t { kUnknown = 0, kWorld, kBody };
 
 /// What one axis or button of a seat does. An axis of 32767 counts as 1, a held button as 1.
@@ -121,11 +153,15 @@ enum class Frame : std::uint32_t { kUnknown = 0, kWorld, kBody };
 ///   impulse      value [N s], once when the button goes down. Buttons only.
 ///   spawn        a body of prefab `target` at `position` with `velocity`, once when the button
 ///                goes down; at most `limit` alive: the oldest makes room. Buttons only.
+///   walk         value times the axis is added to where character `target` wants to go, of which
+///                the part across its `up` counts; a length of 1 or more is its full speed.
+///   jump         character `target` leaves the ground it stands on, once when the button goes
+///                down. Buttons only.
 struct Control {
   Source source = Source::kAxis;
   std::uint32_t index = 0;  ///< Axis 0 to 3, button 0 to 15.
   Effect effect = Effect::kForce;
-  std::string target;  ///< Name of a body, joint or prefab.
+  std::string target;  ///< Name of a body, joint, prefab or character.
   Triple value{};
   Frame frame = Frame::kWorld;  ///< Of `value`, for force and impulse.
   Triple position{};            ///< m, world.
@@ -162,6 +198,7 @@ struct Scene {
   std::vector<SceneBody> bodies;
   std::vector<SceneJoint> joints;
   std::vector<Cloth> cloths;
+  std::vector<SceneCharacter> characters;
   std::vector<SceneBody> prefabs;
   std::vector<Seat> seats;
 };

@@ -3,6 +3,7 @@
 #include <variant>
 
 #include "scenes/build.hpp"
+#include "scenes/characters.hpp"
 #include "scenes/controls.hpp"
 
 namespace cycloid::scenes {
@@ -89,28 +90,18 @@ void Simulation::encode(std::vector<std::byte>& into) const {
   running_->visit([&](const auto& built) { built.world.encode(into); });
 }
 
-/// How many registers the seats need; a snapshot with fewer is of another scene.
-template <int D>
-static std::uint32_t registers_of(const Built<D>& built) {
-  auto last = static_cast<std::uint32_t>(built.seats.size());
-  for (const BoundSeat& seat : built.seats)
-    for (const BoundControl& bound : seat.controls)
-      if (bound.control.effect == Effect::kSpawn)
-        last = bound.first_register + 1 + 2 * bound.control.limit;
-  return last;
-}
-
-/// The registers hold places in rings; a snapshot from outside may name one that is not there.
+/// The registers hold places in rings and characters; a snapshot from outside may name a place that
+/// is not there, or a character nowhere.
 template <int D>
 static bool registers_fit(const Built<D>& built) {
   const auto registers = built.world.registers();
-  if (registers.size() != registers_of(built)) return false;
+  if (registers.size() != built.register_count) return false;
   for (const BoundSeat& seat : built.seats)
     for (const BoundControl& bound : seat.controls)
       if (bound.control.effect == Effect::kSpawn &&
           registers[bound.first_register] >= bound.control.limit)
         return false;
-  return true;
+  return characters_fit(built);
 }
 
 solver::Error Simulation::decode(std::span<const std::byte> bytes) {
@@ -151,6 +142,27 @@ std::vector<Pose> Simulation::poses() const {
   return running_->visit([](const auto& built) {
     std::vector<Pose> poses;
     for (const auto& body : built.world.bodies()) poses.push_back(pose_of(body));
+    return poses;
+  });
+}
+
+template <int D>
+static CharacterPose pose_of(const solver::MoverState<D>& state) {
+  CharacterPose pose;
+  const solver::Vec<D> velocity = state.velocity + state.ground_velocity;
+  for (int i = 0; i < D; ++i) {
+    pose.position[static_cast<std::size_t>(i)] = state.position[i];
+    pose.velocity[static_cast<std::size_t>(i)] = velocity[i];
+  }
+  pose.grounded = state.grounded;
+  return pose;
+}
+
+std::vector<CharacterPose> Simulation::characters() const {
+  return running_->visit([](const auto& built) {
+    std::vector<CharacterPose> poses;
+    for (std::size_t i = 0; i < built.characters.size(); ++i)
+      poses.push_back(pose_of(character_state(built, i)));
     return poses;
   });
 }

@@ -35,6 +35,13 @@ struct Pose {
   std::array<float, 4> rotation{};  ///< Quaternion x, y, z, w.
 };
 
+/// A character as a viewer needs it; its shape is that of the scene's character of the same place.
+struct CharacterPose {
+  std::array<float, 3> position{};
+  std::array<float, 3> velocity{};  ///< World, m/s: that of the ground stood on included.
+  bool grounded = false;
+};
+
 /// A running scene: one world of either dimension with the seats' controls. A pure function of the
 /// scene and of the inputs given to `step`, to the bit. What the controls remember between ticks
 /// lies in the world's registers, so digest, save and encode cover it.
@@ -63,6 +70,7 @@ class Simulation {
   solver::Error decode(std::span<const std::byte> bytes);
   solver::Statistics statistics() const;
   std::vector<Pose> poses() const;
+  std::vector<CharacterPose> characters() const;  ///< In the order of the scene's.
   /// The first `limit` fields that differ; the two must run the same scene.
   std::vector<solver::Difference> differences(const Simulation& other, std::size_t limit) const;
 

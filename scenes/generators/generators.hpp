@@ -50,6 +50,11 @@ Scene vehicle_3d();
 Scene bridge_3d(int planks);
 Scene ragdolls_3d(int count);
 
+/// A character in the plane, walked by a seat past everything that it can and cannot do.
+Scene character_course();
+/// In space; not in the catalogue yet.
+Scene character_course_3d();
+
 // Parts that several of them use.
 
 SceneShape box_shape(float half_x, float half_y);

@@ -269,15 +269,16 @@ MoverStep<D> move(const WorldState<D>& world, const MoverDef<D>& def, const Move
   Vec<D> at = Vec<D>::zero();
   step.iterations = slide(passage, at);
   push_bodies(passage, velocity, walks, step.impulses);
-  step.stepped = walks && passage.separation > 0.0f && climb(passage, at);
+  // Ground alone, however it rises, is no step: there the wish is projected.
+  bool blocked = false;
+  for (const CollisionPlane<D>& plane : passage.planes)
+    blocked = blocked || (plane.push > 0.0f && dot(plane.normal, def.up) < def.slope_cos_min);
+  step.stepped = walks && blocked && passage.separation > 0.0f && climb(passage, at);
   std::optional<QueryHit<D>> ground;
   if (!jumps) ground = find_ground(passage, state, at);
 
   // A walker's speed is horizontal, whatever the slope it walks on: the ground alone, or a step
   // that was climbed, takes none of it.
-  bool blocked = false;
-  for (const CollisionPlane<D>& plane : passage.planes)
-    blocked = blocked || (plane.push > 0.0f && dot(plane.normal, def.up) < def.slope_cos_min);
   if (walks && (step.stepped || !blocked))
     for (CollisionPlane<D>& plane : passage.planes) plane.push = 0.0f;
   const Vec<D> clipped = clip_velocity<D>(velocity, passage.planes);

@@ -64,6 +64,7 @@ TEST(Mover, ClimbsSlopesUpToItsLimitAndNoSteeper) {
       // On the slope a horizontal wish is projected: cos^2 of it is left.
       const float c = std::cos(radians(angle_deg));
       EXPECT_GT(high, 0.8f * 2.0f * c * c * 2.0f * std::tan(radians(angle_deg))) << angle_deg;
+      EXPECT_LT(high, 5.3f * c * c * std::tan(radians(angle_deg))) << angle_deg;  // In 2.5 s.
       for (int tick = 0; tick < 60; ++tick) {
         state = walk(world, walker(), state, -1.0f);
         ASSERT_TRUE(state.grounded) << angle_deg;
