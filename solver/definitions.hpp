@@ -76,11 +76,12 @@ struct Filter {
   }
 };
 
-/// Friction mixes as sqrt(a b), restitution and rolling resistance as max(a, b).
+/// Friction mixes as sqrt(a b), restitution and both resistances as max(a, b).
 struct Material {
   float friction = 0.6f;            ///< Coulomb coefficient, >= 0.
   float restitution = 0.0f;         ///< 0 to 1.
   float rolling_resistance = 0.0f;  ///< Moment over normal force and radius; balls and capsules.
+  float twist_resistance = 0.0f;    ///< The same about the normal, against spin; only in space.
 };
 
 template <int D>

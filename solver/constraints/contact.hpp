@@ -42,9 +42,9 @@ struct ContactBlock {
   L share_b;  ///< m_b^-1 / (m_a^-1 + m_b^-1): how far a contact point follows body b.
   L friction;
   L restitution;
-  L pull;          ///< Acceleration of b towards a along the normal by gravity and forces, m/s^2.
-  L rolling;       ///< Rolling resistance times radius: moment over normal impulse, m.
-  L rolling_mass;  ///< (I_a^-1 + I_b^-1)^-1, kg m^2.
+  L pull;     ///< Acceleration of b towards a along the normal by gravity and forces, m/s^2.
+  L rolling;  ///< Rolling resistance times radius: moment over normal impulse, m.
+  L twist;    ///< The same about the normal, m; 0 in the plane.
   Spin<D, L> rolling_impulse;
   L bias_rate;
   L mass_scale;
@@ -58,7 +58,7 @@ struct ContactBlock {
   std::uint32_t point_count;  ///< The most points of any lane.
   bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
   bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
-  bool rolls;                 ///< Some lane resists rolling.
+  bool rolls;                 ///< Some lane resists rolling or twist.
   bool bounces;               ///< Some lane restitutes.
   bool follows;               ///< Some lane is round.
   Point points[Dim<D>::kManifoldPoints];
@@ -270,28 +270,6 @@ void solve_normal(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>
                    row.impulse_scale * point.normal_impulse;
   set_normal_impulse(point.normal_impulse + L(context.tuning.over_relaxation) * change, arms, block,
                      point, a, b);
-}
-
-/// Rolling resistance: Cdot = w_b - w_a, |impulse| <= rolling * sum of the normal impulses, N m s.
-/// Source: Coulomb's law of rolling; the coefficient times the radius is the lever of the normal
-/// force.
-template <int D, int W>
-void solve_rolling(ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
-  using L = Lanes<W>;
-  constexpr int kSpin = Dim<D>::kSpin;
-  L normal_impulse = L(0.0f);
-  for (std::uint32_t i = 0; i < block.point_count; ++i)
-    normal_impulse += block.points[i].normal_impulse;
-  L wanted[kSpin];
-  for (int i = 0; i < kSpin; ++i)
-    wanted[i] = block.rolling_impulse[i] - block.rolling_mass * (b.spin[i] - a.spin[i]);
-  hold_to_cone<kSpin>(block.rolling * normal_impulse, wanted);
-  Spin<D, L> change;
-  for (int i = 0; i < kSpin; ++i) {
-    change[i] = wanted[i] - block.rolling_impulse[i];
-    block.rolling_impulse[i] = wanted[i];
-  }
-  turn_pair(change, block, a, b);
 }
 
 }  // namespace cycloid::solver

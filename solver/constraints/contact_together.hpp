@@ -1,7 +1,7 @@
 #pragma once
 
 #include "solver/constraints/block.hpp"
-#include "solver/constraints/contact.hpp"
+#include "solver/constraints/contact_rolling.hpp"
 
 namespace cycloid::solver {
 
