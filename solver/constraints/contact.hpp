@@ -222,6 +222,22 @@ void hold_to_cone(const L& bound, L (&impulse)[N]) {
   }
 }
 
+/// In the plane there is one direction to slide.
+template <class L>
+void slide_against(const L&, const L (&)[1], const L (&)[1], const L (&)[1], L (&)[1]) {}
+
+/// In space the masses of the two directions differ, and a step of either by its own would make the
+/// friction lean away from the slip, to the side of the larger: a flat box would slide in a curve.
+/// What leaves the disc takes the smaller mass both ways, so that what does not change any more
+/// points against the slip.
+template <class L>
+void slide_against(const L& bound, const L (&impulse)[2], const L (&mass)[2], const L (&speed)[2],
+                   L (&wanted)[2]) {
+  const auto slides = wanted[0] * wanted[0] + wanted[1] * wanted[1] > bound * bound;
+  const L least = min(mass[0], mass[1]);
+  for (int t = 0; t < 2; ++t) wanted[t] = select(slides, impulse[t] - least * speed[t], wanted[t]);
+}
+
 /// Coulomb friction of one point against its normal impulse: in the plane the impulse is held to an
 /// interval, in space to a disc.
 template <int D, int W>
@@ -231,13 +247,16 @@ void solve_friction(const StepContext<D>& context, ContactBlock<D, W>& block,
   using L = Lanes<W>;
   constexpr int kTangents = Dim<D>::kTangents;
   const Arms<D, L> arms = arms_of(block, point, a, b);
+  const L bound = block.friction * (point.normal_impulse + point.bounce_impulse);
+  L speed[kTangents];
   L wanted[kTangents];
   for (int t = 0; t < kTangents; ++t) {
-    const L speed = relative_speed(block.tangent[t], arms, a, b);
+    speed[t] = relative_speed(block.tangent[t], arms, a, b);
     wanted[t] = point.tangent_impulse[t] -
-                L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed;
+                L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed[t];
   }
-  hold_to_cone<kTangents>(block.friction * (point.normal_impulse + point.bounce_impulse), wanted);
+  slide_against(bound, point.tangent_impulse, point.tangent_mass, speed, wanted);
+  hold_to_cone<kTangents>(bound, wanted);
   Vec<D, L> impulse = Vec<D, L>::zero();
   for (int t = 0; t < kTangents; ++t) {
     impulse += (wanted[t] - point.tangent_impulse[t]) * block.tangent[t];

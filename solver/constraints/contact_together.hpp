@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/constraints/contact_cone.hpp"
 #include "solver/constraints/contact_normals.hpp"
 #include "solver/constraints/contact_rolling.hpp"
 
@@ -197,36 +198,11 @@ void solve_normals_together(const StepContext<D>& context, Sweep sweep, ContactB
   solve_normals_where(Lanes<W>(1.0f) - usable, context, sweep, block, a, b);
 }
 
-/// x with K x + d = 0 where it sticks; see solve_points_coupled.
-template <int N, class L>
-void solve_cone(const L& friction, const L (&k)[N][N], const L (&d)[N], L (&x)[N]) {
-  const L zero(0.0f);
-  BlockFactor<N, L> factor;
-  factor.factor(k, N);
-  L stick[N];
-  for (int i = 0; i < N; ++i) stick[i] = -d[i];
-  factor.solve(stick, N);
-  L square = zero;
-  for (int i = 1; i < N; ++i) square += stick[i] * stick[i];
-  const L size = sqrt(square);
-  const L inverse_size = L(1.0f) / max(size, L(1.0e-30f));
-  L k_slide = k[0][0];
-  for (int i = 1; i < N; ++i) k_slide += friction * inverse_size * stick[i] * k[0][i];
-  // A slide that would need no normal impulse to stop the approach does not exist: stick instead.
-  const L slides = select(size > friction * stick[0], select(k_slide > zero, L(1.0f), zero), zero);
-  const L slide_normal = max(-d[0] / select(k_slide > zero, k_slide, L(1.0f)), zero);
-  x[0] = select(slides > zero, slide_normal, max(stick[0], zero));
-  for (int i = 1; i < N; ++i) {
-    const L slide = friction * slide_normal * inverse_size * stick[i];
-    x[i] = select(slides > zero, slide, select(stick[0] > zero, stick[i], zero));
-  }
-}
-
 /// Normal and tangents of each point solved together: apart, sticking, or sliding with the tangent
 /// impulse at friction times the normal one, against the way it would stick. One row after the
 /// other cycles with period 2 and never converges where friction |K_nt| / K_nn >= 1 (a leaning
 /// rod); this does not. Source: the three cases of the planar frictional point, Brach, "Rigid Body
-/// Collisions" (1989); in space the direction of sliding is that of the sticking impulse.
+/// Collisions" (1989); in space the direction of sliding is found by turn_against_slip.
 template <int D, int W>
 void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
                           MotionLanes<D, W>& a, MotionLanes<D, W>& b) {

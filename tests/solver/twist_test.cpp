@@ -165,7 +165,9 @@ TEST(Twist, SlowsALyingCapsuleByItsOwnMoment) {
 // m a = f, I_x a / r = c r N - f r: a = c g / (1 + I_x / (m r^2)). It rolls about its long axis, at
 // 30 degrees to the axes of the world.
 TEST(Twist, RollingResistanceOfACapsuleTakesItsMomentAboutItsAxis) {
-  for (const Setting& setting : settings()) {
+  for (Setting setting : settings()) {
+    // One sweep of Gauss-Seidel rocks a capsule on its two points, with resistance or without.
+    setting.tuning.sweeps = std::max(setting.tuning.sweeps, 2u);
     const float c = 0.05f;
     World<3> world = ground_of<3>(setting.tuning, {1.0f, 0.0f, c, 0.0f});
     BodyDef<3> def;
