@@ -306,4 +306,38 @@ TEST(NormalBlock, BringsCubesToRestUnderEverySetting) {
   }
 }
 
+// Boxes, capsules and balls share their blocks with other point counts as the width changes.
+TEST(NormalBlock, GivesAWorldTheSameBitsInEveryWidth) {
+  for (Tuning tuning : {Tuning::soft_step(), Tuning::pgs_ngs_block()}) {
+    tuning.contact_block = ContactBlockRows::kNormals;
+    std::vector<std::uint64_t> digests;
+    for (const int lanes : {1, 4, 8, 16}) {
+      WorldDef<3> def = with_gravity<3>({0.4f, 0.0f, 0.05f, 0.05f});
+      def.tuning = tuning;
+      World<3> world = make_world(def);
+      ASSERT_TRUE(world.set_lanes(lanes).ok());
+      add_ground<3>(world, up<3>());
+      for (int i = 0; i < 30; ++i) {
+        ShapeDef<3> shape = ball<3>(0.4f);
+        if (i % 3 == 0) {
+          shape.kind = ShapeKind::kBox;
+          shape.half = {{0.3f, 0.5f, 0.4f}};
+          shape.radius = 0.0f;
+        } else if (i % 3 == 1) {
+          shape.kind = ShapeKind::kCapsule;
+          shape.points = {{{-0.4f, 0.0f, 0.0f}}, {{0.4f, 0.0f, 0.0f}}};
+        }
+        BodyDef<3> body;
+        const auto at = static_cast<float>(i);
+        body.position = {{2.5f * at, 0.8f + 0.02f * at, 0.0f}};
+        body.spin = {{0.3f, 0.1f * at, 0.2f}};
+        add(world, body, shape);
+      }
+      step(world, 120);
+      digests.push_back(world.digest());
+    }
+    for (const std::uint64_t digest : digests) EXPECT_EQ(digest, digests[0]);
+  }
+}
+
 }  // namespace cycloid::solver
