@@ -283,7 +283,7 @@ struct Tuning {
   /// Overlap leaves through velocities of its own, so that it adds no energy.
   static Tuning split_impulse() { return classic(Stabilisation::kSplitImpulse, 10, 0, 10); }
   static Tuning pgs_ngs() { return classic(Stabilisation::kNgs, 8, 0, 3); }
-  /// As Box2D 2.x: the two normals of a manifold at once, in velocity and in position.
+  /// As Box2D 2.x: the normals of a manifold at once, in velocity and in position.
   static Tuning pgs_ngs_block() {
     Tuning tuning = pgs_ngs();
     tuning.contact_block = ContactBlockRows::kNormals;
