@@ -38,6 +38,7 @@ class BinaryReader {
     to.friction = from.friction();
     to.restitution = from.restitution();
     to.rolling_resistance = from.rolling_resistance();
+    to.twist_resistance = from.twist_resistance();
   }
 
   void read(const fb::Shape& from, SceneShape& to) {

@@ -16,6 +16,7 @@ static std::unique_ptr<fb::MaterialT> packed(const SceneMaterial& from) {
   to->friction = from.friction;
   to->restitution = from.restitution;
   to->rolling_resistance = from.rolling_resistance;
+  to->twist_resistance = from.twist_resistance;
   return to;
 }
 

@@ -94,8 +94,8 @@ class Builder {
     def.limits = scene_.limits;
     def.materials.clear();
     for (const SceneMaterial& material : scene_.materials)
-      def.materials.push_back(
-          {material.friction, material.restitution, material.rolling_resistance});
+      def.materials.push_back({material.friction, material.restitution, material.rolling_resistance,
+                               material.twist_resistance});
     if (def.materials.empty()) def.materials.push_back({});
     return def;
   }

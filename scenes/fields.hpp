@@ -111,6 +111,7 @@ void fields(SceneMaterial& m, F&& f) {
   f("friction", m.friction);
   f("restitution", m.restitution);
   f("rolling_resistance", m.rolling_resistance);
+  f("twist_resistance", m.twist_resistance);
 }
 
 template <class F>

@@ -21,6 +21,7 @@ struct SceneMaterial {
   float friction = 0.6f;
   float restitution = 0.0f;
   float rolling_resistance = 0.0f;
+  float twist_resistance = 0.0f;
 };
 
 struct SceneShape {

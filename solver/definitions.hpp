@@ -76,11 +76,12 @@ struct Filter {
   }
 };
 
-/// Friction mixes as sqrt(a b), restitution and rolling resistance as max(a, b).
+/// Friction mixes as sqrt(a b), restitution and both resistances as max(a, b).
 struct Material {
   float friction = 0.6f;            ///< Coulomb coefficient, >= 0.
   float restitution = 0.0f;         ///< 0 to 1.
   float rolling_resistance = 0.0f;  ///< Moment over normal force and radius; balls and capsules.
+  float twist_resistance = 0.0f;    ///< The same about the normal, against spin; only in space.
 };
 
 template <int D>
@@ -282,7 +283,7 @@ struct Tuning {
   /// Overlap leaves through velocities of its own, so that it adds no energy.
   static Tuning split_impulse() { return classic(Stabilisation::kSplitImpulse, 10, 0, 10); }
   static Tuning pgs_ngs() { return classic(Stabilisation::kNgs, 8, 0, 3); }
-  /// As Box2D 2.x: the two normals of a manifold at once, in velocity and in position.
+  /// As Box2D 2.x: the normals of a manifold at once, in velocity and in position.
   static Tuning pgs_ngs_block() {
     Tuning tuning = pgs_ngs();
     tuning.contact_block = ContactBlockRows::kNormals;

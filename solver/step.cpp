@@ -1,3 +1,4 @@
+#include "solver/constraints/contact_rolling.hpp"
 #include "solver/events.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/validate.hpp"
@@ -89,7 +90,8 @@ static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch
     const Material& a = state.materials[state.shapes[contact.shape_a].material];
     const Material& b = state.materials[state.shapes[contact.shape_b].material];
     const bool rubs = a.friction * b.friction > 0.0f;
-    const bool rolls = max(a.rolling_resistance, b.rolling_resistance) > 0.0f;
+    const bool rolls =
+        max(a.rolling_resistance, b.rolling_resistance) > 0.0f || twist_resistance<D>(a, b) > 0.0f;
     const std::uint32_t rows = contact.point_count * (1 + (rubs ? Dim<D>::kTangents : 0)) +
                                (rolls ? static_cast<std::uint32_t>(Dim<D>::kSpin) : 0);
     statistics.rows_per_sweep += rows;

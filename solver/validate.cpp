@@ -55,6 +55,7 @@ Error validate(const Material& material, int index) {
   if (!within(material.restitution, 0.0f, 1.0f)) return invalid("restitution", index);
   if (!within(material.rolling_resistance, 0.0f, 1.0e3f))
     return invalid("rolling_resistance", index);
+  if (!within(material.twist_resistance, 0.0f, 1.0e3f)) return invalid("twist_resistance", index);
   return {};
 }
 

@@ -14,6 +14,7 @@ constexpr void visit_fields(R& r, F&& f, const Material*) {
   f("friction", r.friction);
   f("restitution", r.restitution);
   f("rolling_resistance", r.rolling_resistance);
+  f("twist_resistance", r.twist_resistance);
 }
 
 template <class R, class F, int D>

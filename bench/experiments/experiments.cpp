@@ -27,6 +27,9 @@ static constexpr Experiment kExperiments[] = {
     {"character", "A character's planes: sweeps, the exact solve, and walls", character},
     {"chain", "A chain solved as a tree: exact in one solve at 100,000:1", chain},
     {"reduction", "Rows that cannot act are not solved", reduction},
+    {"box-on-plane", "A box in space on four and eight contacts: A is singular, the wrench is not",
+     box_on_plane},
+    {"in-space", "Stacks, sink and correction in space: the numbers of the plane", in_space},
 };
 
 std::span<const Experiment> all() {

@@ -23,5 +23,7 @@ Report corner();
 Report character();
 Report chain();
 Report reduction();
+Report box_on_plane();
+Report in_space();
 
 }  // namespace cycloid::experiments

@@ -42,9 +42,9 @@ struct ContactBlock {
   L share_b;  ///< m_b^-1 / (m_a^-1 + m_b^-1): how far a contact point follows body b.
   L friction;
   L restitution;
-  L pull;          ///< Acceleration of b towards a along the normal by gravity and forces, m/s^2.
-  L rolling;       ///< Rolling resistance times radius: moment over normal impulse, m.
-  L rolling_mass;  ///< (I_a^-1 + I_b^-1)^-1, kg m^2.
+  L pull;     ///< Acceleration of b towards a along the normal by gravity and forces, m/s^2.
+  L rolling;  ///< Rolling resistance times radius: moment over normal impulse, m.
+  L twist;    ///< The same about the normal, m; 0 in the plane.
   Spin<D, L> rolling_impulse;
   L bias_rate;
   L mass_scale;
@@ -58,7 +58,7 @@ struct ContactBlock {
   std::uint32_t point_count;  ///< The most points of any lane.
   bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
   bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
-  bool rolls;                 ///< Some lane resists rolling.
+  bool rolls;                 ///< Some lane resists rolling or twist.
   bool bounces;               ///< Some lane restitutes.
   bool follows;               ///< Some lane is round.
   Point points[Dim<D>::kManifoldPoints];
@@ -222,6 +222,22 @@ void hold_to_cone(const L& bound, L (&impulse)[N]) {
   }
 }
 
+/// In the plane there is one direction to slide.
+template <class L>
+void slide_against(const L&, const L (&)[1], const L (&)[1], const L (&)[1], L (&)[1]) {}
+
+/// In space the masses of the two directions differ, and a step of either by its own would make the
+/// friction lean away from the slip, to the side of the larger: a flat box would slide in a curve.
+/// What leaves the disc takes the smaller mass both ways, so that what does not change any more
+/// points against the slip.
+template <class L>
+void slide_against(const L& bound, const L (&impulse)[2], const L (&mass)[2], const L (&speed)[2],
+                   L (&wanted)[2]) {
+  const auto slides = wanted[0] * wanted[0] + wanted[1] * wanted[1] > bound * bound;
+  const L least = min(mass[0], mass[1]);
+  for (int t = 0; t < 2; ++t) wanted[t] = select(slides, impulse[t] - least * speed[t], wanted[t]);
+}
+
 /// Coulomb friction of one point against its normal impulse: in the plane the impulse is held to an
 /// interval, in space to a disc.
 template <int D, int W>
@@ -231,13 +247,16 @@ void solve_friction(const StepContext<D>& context, ContactBlock<D, W>& block,
   using L = Lanes<W>;
   constexpr int kTangents = Dim<D>::kTangents;
   const Arms<D, L> arms = arms_of(block, point, a, b);
+  const L bound = block.friction * (point.normal_impulse + point.bounce_impulse);
+  L speed[kTangents];
   L wanted[kTangents];
   for (int t = 0; t < kTangents; ++t) {
-    const L speed = relative_speed(block.tangent[t], arms, a, b);
+    speed[t] = relative_speed(block.tangent[t], arms, a, b);
     wanted[t] = point.tangent_impulse[t] -
-                L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed;
+                L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed[t];
   }
-  hold_to_cone<kTangents>(block.friction * (point.normal_impulse + point.bounce_impulse), wanted);
+  slide_against(bound, point.tangent_impulse, point.tangent_mass, speed, wanted);
+  hold_to_cone<kTangents>(bound, wanted);
   Vec<D, L> impulse = Vec<D, L>::zero();
   for (int t = 0; t < kTangents; ++t) {
     impulse += (wanted[t] - point.tangent_impulse[t]) * block.tangent[t];
@@ -270,28 +289,6 @@ void solve_normal(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>
                    row.impulse_scale * point.normal_impulse;
   set_normal_impulse(point.normal_impulse + L(context.tuning.over_relaxation) * change, arms, block,
                      point, a, b);
-}
-
-/// Rolling resistance: Cdot = w_b - w_a, |impulse| <= rolling * sum of the normal impulses, N m s.
-/// Source: Coulomb's law of rolling; the coefficient times the radius is the lever of the normal
-/// force.
-template <int D, int W>
-void solve_rolling(ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
-  using L = Lanes<W>;
-  constexpr int kSpin = Dim<D>::kSpin;
-  L normal_impulse = L(0.0f);
-  for (std::uint32_t i = 0; i < block.point_count; ++i)
-    normal_impulse += block.points[i].normal_impulse;
-  L wanted[kSpin];
-  for (int i = 0; i < kSpin; ++i)
-    wanted[i] = block.rolling_impulse[i] - block.rolling_mass * (b.spin[i] - a.spin[i]);
-  hold_to_cone<kSpin>(block.rolling * normal_impulse, wanted);
-  Spin<D, L> change;
-  for (int i = 0; i < kSpin; ++i) {
-    change[i] = wanted[i] - block.rolling_impulse[i];
-    block.rolling_impulse[i] = wanted[i];
-  }
-  turn_pair(change, block, a, b);
 }
 
 }  // namespace cycloid::solver

@@ -34,9 +34,60 @@ Lanes<W> position_error(const StepContext<D>& context, const Lanes<W>& separatio
   return min(max(error, L(-context.tuning.correction_max)), L(0.0f));
 }
 
+/// The overlaps of the plane's two points at once; 1 in lanes where that was possible.
+template <int D, int W>
+Lanes<W> correct_two(const StepContext<D>& context, const ContactBlock<D, W>& block,
+                     MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  using L = Lanes<W>;
+  if (block.point_count != 2) return L(0.0f);
+  const Arms<D, L> first = turned_arms<D, W>(block, block.points[0], a, b);
+  const Arms<D, L> second = turned_arms<D, W>(block, block.points[1], a, b);
+  const PairProblem<W> problem = {
+      coupling(block, block.normal, first, block.normal, first),
+      coupling(block, block.normal, first, block.normal, second),
+      coupling(block, block.normal, second, block.normal, second),
+      position_error<D, W>(context, separation_of(block, block.points[0], a, b)),
+      position_error<D, W>(context, separation_of(block, block.points[1], a, b))};
+  L x1;
+  L x2;
+  L usable;
+  solve_pair(problem, x1, x2, usable);
+  usable = select(block.points[1].normal_mass > L(0.0f), usable, L(0.0f));
+  const auto take = usable > L(0.0f);
+  move_pair(select(take, x1, L(0.0f)) * block.normal, first, block, a, b);
+  move_pair(select(take, x2, L(0.0f)) * block.normal, second, block, a, b);
+  return usable;
+}
+
+/// The same for up to four points in space.
+template <int D, int W>
+Lanes<W> correct_manifold(const StepContext<D>& context, const ContactBlock<D, W>& block,
+                          MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  using L = Lanes<W>;
+  constexpr int kPoints = Dim<D>::kManifoldPoints;
+  const int count = static_cast<int>(block.point_count);
+  Arms<D, L> arms[kPoints];
+  NormalProblem<kPoints, L> problem;
+  for (int i = 0; i < count; ++i) {
+    const auto& point = block.points[i];
+    arms[i] = turned_arms<D, W>(block, point, a, b);
+    const L error = position_error<D, W>(context, separation_of(block, point, a, b));
+    problem.d[i] = select(point.normal_mass > L(0.0f), error, L(0.0f));
+  }
+  couple_normals(block, arms, problem);
+  L x[kPoints];
+  L usable;
+  solve_normals(problem, count, x, usable);
+  for (int i = 0; i < count; ++i) {
+    const L lambda = select(usable > L(0.0f), x[i], L(0.0f));
+    move_pair(lambda * block.normal, arms[i], block, a, b);
+  }
+  return usable;
+}
+
 /// One non-linear Gauss-Seidel sweep over a block: lambda = max(0, -K^-1 C) with separation, arms
 /// and K at the present poses. What does not overlap is not touched, to the bit. Source: Catto,
-/// "Understanding Constraints" (GDC 2014); for two points at once solve_pair.
+/// "Understanding Constraints" (GDC 2014); for the points at once solve_pair and solve_normals.
 template <int D, int W>
 void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
                      std::span<Motion<D>> motions) {
@@ -44,22 +95,11 @@ void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
   MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
   MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
   L usable(0.0f);
-  if (context.tuning.contact_block == ContactBlockRows::kNormals && block.point_count == 2) {
-    const Arms<D, L> first = turned_arms<D, W>(block, block.points[0], a, b);
-    const Arms<D, L> second = turned_arms<D, W>(block, block.points[1], a, b);
-    const PairProblem<W> problem = {
-        coupling(block, block.normal, first, block.normal, first),
-        coupling(block, block.normal, first, block.normal, second),
-        coupling(block, block.normal, second, block.normal, second),
-        position_error<D, W>(context, separation_of(block, block.points[0], a, b)),
-        position_error<D, W>(context, separation_of(block, block.points[1], a, b))};
-    L x1;
-    L x2;
-    solve_pair(problem, x1, x2, usable);
-    usable = select(block.points[1].normal_mass > L(0.0f), usable, L(0.0f));
-    const auto take = usable > L(0.0f);
-    move_pair(select(take, x1, L(0.0f)) * block.normal, first, block, a, b);
-    move_pair(select(take, x2, L(0.0f)) * block.normal, second, block, a, b);
+  if (context.tuning.contact_block == ContactBlockRows::kNormals) {
+    if constexpr (Dim<D>::kTangents == 1)
+      usable = correct_two(context, block, a, b);
+    else
+      usable = correct_manifold(context, block, a, b);
   }
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     const auto& point = block.points[i];

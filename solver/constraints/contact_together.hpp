@@ -1,7 +1,8 @@
 #pragma once
 
-#include "solver/constraints/block.hpp"
-#include "solver/constraints/contact.hpp"
+#include "solver/constraints/contact_cone.hpp"
+#include "solver/constraints/contact_normals.hpp"
+#include "solver/constraints/contact_rolling.hpp"
 
 namespace cycloid::solver {
 
@@ -83,13 +84,72 @@ void solve_normals_where(const Lanes<W>& wanted, const StepContext<D>& context, 
   }
 }
 
-/// The normals of a manifold solved together: exact in one sweep for a box on a plane, where one
-/// row after the other converges at ((1 - 1.5 b^2) / (1 + 1.5 b^2))^2. A soft row adds its
-/// compliance to the diagonal. Manifolds of other than two points, and ill-conditioned ones, go row
-/// by row.
+/// J M^-1 J^T of the normals of a manifold; rows of points that a lane lacks are those of 1.
+template <int D, int W, int N>
+void couple_normals(const ContactBlock<D, W>& block, const Arms<D, Lanes<W>> (&arms)[N],
+                    NormalProblem<N, Lanes<W>>& problem) {
+  using L = Lanes<W>;
+  Spin<D, L> moment_a[N];
+  Spin<D, L> moment_b[N];
+  const L linear = block.mass_a.inverse_mass + block.mass_b.inverse_mass;
+  for (std::uint32_t i = 0; i < block.point_count; ++i) {
+    moment_a[i] = moment(arms[i].r_a, block.normal);
+    moment_b[i] = moment(arms[i].r_b, block.normal);
+    const Spin<D, L> turned_a = turned_by<D, W>(block.mass_a, moment_a[i]);
+    const Spin<D, L> turned_b = turned_by<D, W>(block.mass_b, moment_b[i]);
+    const auto exists = block.points[i].normal_mass > L(0.0f);
+    for (std::uint32_t j = 0; j <= i; ++j) {
+      const L k = linear + dot(moment_a[j], turned_a) + dot(moment_b[j], turned_b);
+      problem.k[i][j] = select(exists, k, L(i == j ? 1.0f : 0.0f));
+      problem.k[j][i] = problem.k[i][j];
+    }
+  }
+}
+
+/// The normals of a manifold of up to four points; returns 1 where they are solved, else 0.
 template <int D, int W>
-void solve_normals_together(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
-                            MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+Lanes<W> solve_manifold(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
+                        MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  using L = Lanes<W>;
+  constexpr int kPoints = Dim<D>::kManifoldPoints;
+  const int count = static_cast<int>(block.point_count);
+  Arms<D, L> arms[kPoints];
+  L old[kPoints];
+  L compliance[kPoints];
+  NormalProblem<kPoints, L> problem;
+  for (int i = 0; i < count; ++i) {
+    const auto& point = block.points[i];
+    arms[i] = arms_of(block, point, a, b);
+    old[i] = point.normal_impulse;
+    const L speed = relative_speed(block.normal, arms[i], a, b);
+    const NormalRow<W> row = normal_row(context, sweep, block, point, a, b, speed);
+    const auto scaled = row.mass_scale > L(0.0f);  // Not in unused lanes.
+    compliance[i] = L(1.0f) / select(scaled, row.mass_scale, L(1.0f)) - L(1.0f);
+    problem.d[i] = speed + row.bias;
+  }
+  couple_normals(block, arms, problem);
+  // What the rows' own impulses have done is taken out of the speeds, so x is the whole impulse.
+  for (int i = 0; i < count; ++i) {
+    L own = problem.k[i][0] * old[0];
+    for (int j = 1; j < count; ++j) own = own + problem.k[i][j] * old[j];
+    const auto exists = block.points[i].normal_mass > L(0.0f);
+    problem.d[i] = select(exists, problem.d[i] - own, L(0.0f));
+  }
+  for (int i = 0; i < count; ++i)
+    problem.k[i][i] = problem.k[i][i] + compliance[i] * problem.k[i][i];
+  L x[kPoints];
+  L usable;
+  solve_normals(problem, count, x, usable);
+  for (int i = 0; i < count; ++i)
+    set_normal_impulse(select(usable > L(0.0f), x[i], old[i]), arms[i], block, block.points[i], a,
+                       b);
+  return usable;
+}
+
+/// The same for the two points of the plane.
+template <int D, int W>
+Lanes<W> solve_two_normals(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
+                           MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   L usable(0.0f);
   if (block.point_count == 2) {
@@ -120,39 +180,29 @@ void solve_normals_together(const StepContext<D>& context, Sweep sweep, ContactB
     set_normal_impulse(select(take, x1, old[0]), arms[0], block, *points[0], a, b);
     set_normal_impulse(select(take, x2, old[1]), arms[1], block, *points[1], a, b);
   }
-  solve_normals_where(L(1.0f) - usable, context, sweep, block, a, b);
+  return usable;
 }
 
-/// x with K x + d = 0 where it sticks; see solve_points_coupled.
-template <int N, class L>
-void solve_cone(const L& friction, const L (&k)[N][N], const L (&d)[N], L (&x)[N]) {
-  const L zero(0.0f);
-  BlockFactor<N, L> factor;
-  factor.factor(k, N);
-  L stick[N];
-  for (int i = 0; i < N; ++i) stick[i] = -d[i];
-  factor.solve(stick, N);
-  L square = zero;
-  for (int i = 1; i < N; ++i) square += stick[i] * stick[i];
-  const L size = sqrt(square);
-  const L inverse_size = L(1.0f) / max(size, L(1.0e-30f));
-  L k_slide = k[0][0];
-  for (int i = 1; i < N; ++i) k_slide += friction * inverse_size * stick[i] * k[0][i];
-  // A slide that would need no normal impulse to stop the approach does not exist: stick instead.
-  const L slides = select(size > friction * stick[0], select(k_slide > zero, L(1.0f), zero), zero);
-  const L slide_normal = max(-d[0] / select(k_slide > zero, k_slide, L(1.0f)), zero);
-  x[0] = select(slides > zero, slide_normal, max(stick[0], zero));
-  for (int i = 1; i < N; ++i) {
-    const L slide = friction * slide_normal * inverse_size * stick[i];
-    x[i] = select(slides > zero, slide, select(stick[0] > zero, stick[i], zero));
-  }
+/// The normals of a manifold solved together: exact in one sweep for a box on a plane, where one
+/// row after the other converges at ((1 - 1.5 b^2) / (1 + 1.5 b^2))^2 in the plane. A soft row adds
+/// its compliance to the diagonal. In the plane a single point, and everywhere what is
+/// ill-conditioned, goes row by row.
+template <int D, int W>
+void solve_normals_together(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
+                            MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  Lanes<W> usable;
+  if constexpr (Dim<D>::kTangents == 1)
+    usable = solve_two_normals(context, sweep, block, a, b);
+  else
+    usable = solve_manifold(context, sweep, block, a, b);
+  solve_normals_where(Lanes<W>(1.0f) - usable, context, sweep, block, a, b);
 }
 
 /// Normal and tangents of each point solved together: apart, sticking, or sliding with the tangent
 /// impulse at friction times the normal one, against the way it would stick. One row after the
 /// other cycles with period 2 and never converges where friction |K_nt| / K_nn >= 1 (a leaning
 /// rod); this does not. Source: the three cases of the planar frictional point, Brach, "Rigid Body
-/// Collisions" (1989); in space the direction of sliding is that of the sticking impulse.
+/// Collisions" (1989); in space the direction of sliding is found by turn_against_slip.
 template <int D, int W>
 void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
                           MotionLanes<D, W>& a, MotionLanes<D, W>& b) {

@@ -1,3 +1,4 @@
+#include "solver/constraints/contact_rolling.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -10,6 +11,7 @@ struct ContactNumbers {
   float friction;
   float restitution;
   float rolling;  ///< m
+  float twist;    ///< m
   Softness softness;
 };
 
@@ -29,12 +31,13 @@ static ContactNumbers<D> numbers_of(const StepContext<D>& context, const WorldSt
   const Material& material_b = state.materials[b.material];
   const bool both_move =
       state.bodies[a.body].inverse_mass > 0.0f && state.bodies[b.body].inverse_mass > 0.0f;
+  const float radius = max(rolling_radius(a), rolling_radius(b));
   return {a.body,
           b.body,
           sqrt(material_a.friction * material_b.friction),
           max(material_a.restitution, material_b.restitution),
-          max(material_a.rolling_resistance, material_b.rolling_resistance) *
-              max(rolling_radius(a), rolling_radius(b)),
+          max(material_a.rolling_resistance, material_b.rolling_resistance) * radius,
+          twist_resistance<D>(material_a, material_b) * radius,
           both_move ? context.contact : context.contact_static};
 }
 
@@ -125,15 +128,6 @@ static void set_round(const WorldState<D>& state, const Contact<D>& contact, int
 }
 
 template <int D>
-static float rolling_mass(const BodyMass<D>& a, const BodyMass<D>& b) {
-  constexpr int kSpin = Dim<D>::kSpin;
-  float trace = 0.0f;
-  for (int i = 0; i < kSpin; ++i)
-    trace += a.inverse_inertia.m[i * kSpin + i] + b.inverse_inertia.m[i * kSpin + i];
-  return trace > 0.0f ? static_cast<float>(kSpin) / trace : 0.0f;
-}
-
-template <int D>
 static bool can_turn(const BodyMass<D>& mass) {
   for (const float value : mass.inverse_inertia.m)
     if (value != 0.0f) return true;
@@ -164,7 +158,7 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   set_lane(block.friction, lane, numbers.friction);
   set_lane(block.restitution, lane, numbers.restitution);
   set_lane(block.rolling, lane, numbers.rolling);
-  set_lane(block.rolling_mass, lane, rolling_mass(mass_a, mass_b));
+  set_lane(block.twist, lane, numbers.twist);
   set_lane(block.rolling_impulse, lane, context.tuning.warm_starting * contact.rolling_impulse);
   const Vec<D> pulls = free_acceleration(context, state.bodies[numbers.body_a]) -
                        free_acceleration(context, state.bodies[numbers.body_b]);
@@ -172,7 +166,7 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   set_round(state, contact, lane, block);
   block.turns = block.turns || can_turn(mass_a) || can_turn(mass_b);
   block.rubs = block.rubs || numbers.friction > 0.0f;
-  block.rolls = block.rolls || numbers.rolling > 0.0f;
+  block.rolls = block.rolls || numbers.rolling > 0.0f || numbers.twist > 0.0f;
   block.bounces = block.bounces || numbers.restitution > 0.0f;
   set_lane(block.bias_rate, lane, numbers.softness.bias_rate);
   set_lane(block.mass_scale, lane, numbers.softness.mass_scale);

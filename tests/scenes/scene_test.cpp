@@ -14,7 +14,8 @@ namespace cycloid::scenes {
 Scene sample() {
   Loaded loaded = from_json(R"({
     "name": "sample", "dimension": 2, "gravity": [0, -10],
-    "materials": [{"name": "ice", "friction": 0.1}, {"name": "rubber", "restitution": 0.5}],
+    "materials": [{"name": "ice", "friction": 0.1}, {"name": "rubber", "restitution": 0.5,
+      "rolling_resistance": 0.02, "twist_resistance": 0.03}],
     "bodies": [
       {"name": "floor", "kind": "static", "shapes": [{"kind": "half_space", "normal": [0, 1]}]},
       {"name": "a", "position": [0, 3], "shapes": [{"radius": 0.5, "material": "rubber"}]},
@@ -306,6 +307,7 @@ TEST(SceneDigest, ChangesWithEverythingThatASceneMeansAndWithNothingElse) {
       {"slop", [](Scene& s) { s.tuning.slop = 0.001f; }},
       {"limit", [](Scene& s) { s.limits.contacts -= 1; }},
       {"friction", [](Scene& s) { s.materials[0].friction = 0.2f; }},
+      {"twist resistance", [](Scene& s) { s.materials[0].twist_resistance = 0.2f; }},
       {"position", [](Scene& s) { s.bodies[1].position[0] = 0.1f; }},
       {"radius", [](Scene& s) { s.bodies[2].shapes[0].radius = 0.06f; }},
       {"anchor", [](Scene& s) { s.joints[0].anchor_a[0] = 0.5f; }},

@@ -33,6 +33,70 @@ TEST(FrictionCone, SlowsASlidingBodyEquallyIn16Directions) {
   }
 }
 
+struct Setting {
+  const char* name;
+  Tuning tuning;
+};
+
+static std::vector<Setting> velocity_settings() {
+  Tuning block = Tuning::soft_step();
+  block.contact_block = ContactBlockRows::kNormals;
+  Tuning coupled = Tuning::soft_step();
+  coupled.contact_block = ContactBlockRows::kNormalFriction;
+  return {{"soft_step", Tuning::soft_step()},
+          {"soft_step, normals together", block},
+          {"soft_step, normal and friction together", coupled},
+          {"pgs", Tuning::pgs()},
+          {"split_impulse", Tuning::split_impulse()},
+          {"pgs_ngs_block", Tuning::pgs_ngs_block()},
+          {"tgs_ngs", Tuning::tgs_ngs()}};
+}
+
+/// What a body slides like after a second, in units of its start.
+struct Slide {
+  double lost;    ///< Speed, m/s.
+  double aside;   ///< Of the way.
+  double turned;  ///< Spin about the vertical, rad/s.
+};
+
+static Slide slide(const Tuning& tuning, const ShapeDef<3>& shape, double angle, float speed) {
+  WorldDef<3> def = rough(0.3f);
+  def.tuning = tuning;
+  def.tuning.sleep_s = 0.0f;
+  World<3> world = make_world(def);
+  add_ground<3>(world, up<3>());
+  BodyDef<3> body;
+  body.position = {{0.0f, shape.half[1], 0.0f}};
+  const Vec<3> along = {
+      {static_cast<float>(std::cos(angle)), 0.0f, static_cast<float>(std::sin(angle))}};
+  body.velocity = speed * along;
+  const BodyId id = add(world, body, shape);
+  step(world, 60);
+  const BodyView<3> now = view(world, id);
+  const Vec<3> across = cross(along, up<3>());
+  const double way = double{dot(now.position - body.position, along)};
+  return {double{speed - dot(now.velocity, along)},
+          std::abs(double{dot(now.position - body.position, across)}) / way,
+          std::abs(double{now.spin[1]})};
+}
+
+// A flat box stays flat while its corners' friction, at its height below the centre, loads the
+// front: the four points slide as one, at mu g, and straight on.
+TEST(FrictionCone, SlowsASlidingBoxEquallyIn16DirectionsAndStraightOn) {
+  constexpr double kPi = 3.14159265358979;
+  for (const Setting& setting : velocity_settings())
+    for (const Vec<3>& half : {Vec<3>{{0.5f, 0.5f, 0.5f}}, Vec<3>{{0.8f, 0.2f, 0.4f}}})
+      for (int i = 0; i < 16; ++i) {
+        ShapeDef<3> shape;
+        shape.kind = ShapeKind::kBox;
+        shape.half = half;
+        const Slide now = slide(setting.tuning, shape, 2.0 * kPi * i / 16.0, 6.0f);
+        EXPECT_NEAR(now.lost, 3.0, 0.03) << setting.name << " " << i << " " << half[0];
+        EXPECT_LT(now.aside, 0.01) << setting.name << " " << i << " " << half[0];
+        EXPECT_LT(now.turned, 0.05) << setting.name << " " << i << " " << half[0];
+      }
+}
+
 /// Speed of a ball that is thrown sliding, once it rolls.
 template <int D>
 static float rolling_speed() {
