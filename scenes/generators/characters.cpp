@@ -52,32 +52,6 @@ static void add_lift(Scene& scene) {
   scene.joints.push_back(joint);
 }
 
-static Control walk_control(std::uint32_t axis, const std::string& target, const Triple& value) {
-  Control control;
-  control.index = axis;
-  control.effect = Effect::kWalk;
-  control.target = target;
-  control.value = value;
-  return control;
-}
-
-static Control jump_control(const std::string& target) {
-  Control control;
-  control.source = Source::kButton;
-  control.effect = Effect::kJump;
-  control.target = target;
-  return control;
-}
-
-static ScriptEntry say(std::uint32_t from, std::uint32_t until, float walk, std::uint32_t buttons) {
-  ScriptEntry entry;
-  entry.from = from;
-  entry.until = until;
-  entry.axes = {walk, 0.0f, 0.0f, 0.0f};
-  entry.buttons = buttons;
-  return entry;
-}
-
 Scene character_course() {
   Scene scene = planar_scene("character-course",
                              "A walker on a ramp, stairs, a steep slope and a lift; it pushes a "
@@ -99,60 +73,9 @@ Scene character_course() {
   seat.controls = {walk_control(0, "walker", {1.0f, 0.0f, 0.0f}), jump_control("walker")};
   // Against the steep slope, to the plateau, until the box has fallen, over the gap, onto the lift,
   // up, and to the wall.
-  seat.script = {say(1, 30, -1.0f, 0), say(30, 241, 1.0f, 0), say(268, 368, 1.0f, 0),
-                 say(268, 270, 1.0f, kJumpButton), say(474, 0, 1.0f, 0)};
-  scene.seats = {seat};
-  return scene;
-}
-
-/// What the course is made of in space; balls and half-spaces until there are boxes.
-static void add_spatial_course(Scene& scene) {
-  SceneBody floor = ground();
-  SceneShape steep = floor.shapes[0];
-  steep.normal = {0.81915204f, 0.57357644f, 0.0f};  // A slope of 55 degrees, from x = -4 on.
-  steep.offset = -4.0f * steep.normal[0];
-  SceneShape ramp = floor.shapes[0];
-  ramp.normal = {-0.5f, 0.8660254f, 0.0f};  // A ramp of 30 degrees, from x = 8 on.
-  ramp.offset = 8.0f * ramp.normal[0];
-  floor.shapes.push_back(steep);
-  floor.shapes.push_back(ramp);
-  scene.bodies.push_back(floor);
-  for (int i = 0; i < 3; ++i) {
-    SceneBody bump;
-    bump.kind = solver::BodyKind::kStatic;
-    bump.position = {3.0f + static_cast<float>(i), -0.8f, 0.0f};
-    bump.shapes = {ball_shape(1.0f)};
-    scene.bodies.push_back(bump);
-  }
-  SceneBody pushed = body_at("pushed", {4.0f, 0.4f, 2.0f}, ball_shape(0.4f));
-  pushed.shapes[0].density = 100.0f;
-  scene.bodies.push_back(pushed);
-}
-
-Scene character_course_3d() {
-  Scene scene;
-  scene.name = "character-course-3d";
-  scene.summary = "A ball of a character on bumps, a ramp and a steep slope; it pushes a ball";
-  scene.dimension = 3;
-  scene.gravity = {0.0f, -10.0f, 0.0f};
-  scene.materials = {{"default", 0.6f, 0.0f, 0.0f}};
-  add_spatial_course(scene);
-  SceneCharacter walker;
-  walker.name = "walker";
-  walker.position = {0.0f, 0.02f, 0.0f};
-  walker.lower = {0.0f, 0.4f, 0.0f};
-  walker.upper = walker.lower;
-  walker.radius = 0.4f;
-  scene.characters = {walker};
-  Seat seat;
-  seat.name = "player";
-  seat.controls = {walk_control(0, "walker", {1.0f, 0.0f, 0.0f}),
-                   walk_control(1, "walker", {0.0f, 0.0f, 1.0f}), jump_control("walker")};
-  seat.script = {say(1, 90, -1.0f, 0), say(90, 200, 1.0f, 0), say(120, 122, 1.0f, kJumpButton),
-                 say(260, 0, 1.0f, 0)};
-  ScriptEntry aside = say(200, 260, 0.0f, 0);
-  aside.axes[1] = 1.0f;
-  seat.script.push_back(aside);
+  seat.script = {walk_entry(1, 30, -1.0f, 0), walk_entry(30, 241, 1.0f, 0),
+                 walk_entry(268, 368, 1.0f, 0), walk_entry(268, 270, 1.0f, kJumpButton),
+                 walk_entry(474, 0, 1.0f, 0)};
   scene.seats = {seat};
   return scene;
 }

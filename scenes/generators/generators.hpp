@@ -52,7 +52,7 @@ Scene ragdolls_3d(int count);
 
 /// A character in the plane, walked by a seat past everything that it can and cannot do.
 Scene character_course();
-/// In space; not in the catalogue yet.
+/// The same in space, with a wall to slide along and a narrow corner.
 Scene character_course_3d();
 
 // Parts that several of them use.
@@ -74,6 +74,11 @@ Control impulse_control(std::uint32_t button, const std::string& target, const T
 Control force_control(std::uint32_t axis, const std::string& target, const Triple& value);
 /// An axis of 1 is a motor speed of `value`, rad/s or m/s.
 Control motor_control(std::uint32_t axis, const std::string& target, float value);
+/// An axis that walks character `target` towards `value`; button 0 that makes it jump.
+Control walk_control(std::uint32_t axis, const std::string& target, const Triple& value);
+Control jump_control(const std::string& target);
+/// A script that says `walk` on axis 0.
+ScriptEntry walk_entry(std::uint32_t from, std::uint32_t until, float walk, std::uint32_t buttons);
 /// Gravity of 10 m/s^2 downwards and one material.
 Scene planar_scene(const char* name, const char* summary);
 Scene spatial_scene(const std::string& name, const char* summary);

@@ -104,6 +104,32 @@ Control motor_control(std::uint32_t axis, const std::string& target, float value
   return control;
 }
 
+Control walk_control(std::uint32_t axis, const std::string& target, const Triple& value) {
+  Control control;
+  control.index = axis;
+  control.effect = Effect::kWalk;
+  control.target = target;
+  control.value = value;
+  return control;
+}
+
+Control jump_control(const std::string& target) {
+  Control control;
+  control.source = Source::kButton;
+  control.effect = Effect::kJump;
+  control.target = target;
+  return control;
+}
+
+ScriptEntry walk_entry(std::uint32_t from, std::uint32_t until, float walk, std::uint32_t buttons) {
+  ScriptEntry entry;
+  entry.from = from;
+  entry.until = until;
+  entry.axes = {walk, 0.0f, 0.0f, 0.0f};
+  entry.buttons = buttons;
+  return entry;
+}
+
 Scene planar_scene(const char* name, const char* summary) {
   Scene scene;
   scene.name = name;
