@@ -12,7 +12,7 @@ namespace cycloid::scenes {
 struct BoundControl {
   Control control;
   solver::BodyId body;    ///< force, torque, impulse
-  solver::JointId joint;  ///< motor_speed
+  solver::JointId joint;  ///< motor_speed, steering
   float motor_max = 0.0f;
   std::size_t prefab = 0;  ///< spawn
   std::uint32_t first_register =

@@ -4,9 +4,9 @@
 namespace cycloid::solver {
 
 /// A door: b turns about an axis u of a, which stays fixed in both. In space.
-///   C = (anchor_b - anchor_a [m], t . (u x u') for two directions t across u), u' being u as b
-///   carries it: 5 equalities, one block, J as in append_point_rows and append_axis_rows, impulses
-///   N s and N m s, unbounded.
+///   C = (anchor_b - anchor_a [m], twice the tangent of half the angle between u and u',
+///   along two directions across u), u' being u as b carries it: 5 equalities, one block, J as in
+///   append_point_rows and append_axis_rows, impulses N s and N m s, unbounded.
 /// The coordinate is the twist of b about u since creation, rad in (-pi, pi], J as in twist_row. A
 /// spring, limits and a motor act on it, in N m s.
 /// Source: Catto, "Modeling and Solving Constraints" (GDC 2009).

@@ -19,8 +19,11 @@ AxisPair axis_pair(const JointFrame<3>& frame, const Vec<3>& axis);
 /// As above for an axis that a holds at `now` and held at `before` at creation; unit, frame of a.
 AxisPair axis_pair(const JointFrame<3>& frame, const Vec<3>& before, const Vec<3>& now);
 
-/// Keeps the axis u' of b along the axis u of a. For t in {t_0, t_1}, fixed in a and across u:
-///   C = t . (u x u') [sine of an angle],  J_b = u' x (t x u) = -J_a, which is t where C = 0.
+/// Keeps the axis u' of b along the axis u of a. With e = u x u', s = 1 + u . u' and, for each t in
+/// {t_0, t_1}, fixed in a and across u:
+///   C = 2 t . e / s, which is twice the tangent of half the angle between u and u',
+///   J_b = (2 / s) (u' x (t x u) + (t . e / s) e) = -J_a, which is t where C = 0.
+/// The tangent rather than the sine, which would also vanish with u' the other way round.
 void append_axis_rows(const AxisPair& pair, const Vec<3>& t_0, const Vec<3>& t_1,
                       JointRows<3>& rows);
 
