@@ -1,5 +1,6 @@
 #include "solver/constraints/joints/joints.hpp"
 #include "solver/constraints/joints/swing_twist.hpp"
+#include "solver/trig.hpp"
 
 namespace cycloid::solver {
 
@@ -21,6 +22,8 @@ void cone_twist_rows(const JointFrame<3>& frame, JointRows<3>& rows) {
   const AxisPair pair = axis_pair(frame, joint.axis);
   rows.has_axis = true;
   rows.axis = twist_row(frame, joint.axis, pair);
+  // Swing does not go beyond pi but comes back: a limit there would stop what passes through.
+  if (joint.cone >= kPi) return;
   rows.has_cone_axis = true;
   rows.cone_axis = swing_row(pair);
 }
