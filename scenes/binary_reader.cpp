@@ -111,6 +111,9 @@ class BinaryReader {
     to.ground_b = triple(from.ground_b());
     to.curve = static_cast<solver::CurveKind>(from.curve());
     to.size = {from.size_x(), from.size_y()};
+    to.axle = triple(from.axle());
+    to.steering = from.steering();
+    to.cone = from.cone();
     to.collide_connected = from.collide_connected();
   }
 

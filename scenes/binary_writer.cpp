@@ -96,6 +96,9 @@ static std::unique_ptr<fb::JointT> packed(const SceneJoint& from) {
   to->curve = static_cast<fb::CurveKind>(from.curve);
   to->size_x = from.size[0];
   to->size_y = from.size[1];
+  to->axle = triple(from.axle);
+  to->steering = from.steering;
+  to->cone = from.cone;
   to->collide_connected = from.collide_connected;
   return to;
 }

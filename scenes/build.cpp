@@ -59,6 +59,7 @@ static std::string reason_of(const Error& error) {
   if (field == "rotation" || field == "normal") return "has to have length 1";
   if (field == "upper") return "has to be at least lower, and an angle within 3.2 rad";
   if (field == "axis") return "has to have length 1";
+  if (field == "axle") return "has to have length 1, across the axis; the plane has none";
   if (field == "limit_enabled") return "is not possible here: this kind takes no limits";
   if (field == "motor") return "is not possible here: this kind takes no such motor";
   if (field == "kind") return "is not possible here";
@@ -216,6 +217,9 @@ class Builder {
     def.anchor_a = vec<D>(from.anchor_a);
     def.anchor_b = vec<D>(from.anchor_b);
     def.axis = vec<D>(from.axis);
+    def.axle = vec<D>(from.axle);
+    def.steering = from.steering;
+    def.cone = from.cone;
     def.length = from.length;
     def.ratio = from.ratio;
     def.hertz = from.hertz;
@@ -342,6 +346,24 @@ class Builder {
       add_control(scene_.seats[i].controls[c], at(path + "/controls", c), seat);
   }
 
+  bool bind_joint(const Control& control, const std::string& path, BoundControl& bound) {
+    const auto found = joints_.find(control.target);
+    std::string reason;
+    if (found == joints_.end()) {
+      reason = "names no joint: '" + control.target + "'";
+    } else {
+      const SceneJoint& joint = scene_.joints[found->second.second];
+      bound.joint = found->second.first;
+      bound.motor_max = joint.motor_max;
+      const bool steers = joint.kind == solver::JointKind::kWheel && solver::Dim<D>::kSpin > 1;
+      if (control.effect == Effect::kMotorSpeed && joint.motor != solver::MotorKind::kSpeed)
+        reason = "names a joint without a motor of speed";
+      if (control.effect == Effect::kSteering && !steers) reason = "names no wheel in space";
+    }
+    if (!reason.empty()) complain(path + "/target", reason);
+    return reason.empty();
+  }
+
   void add_control(const Control& control, const std::string& path, BoundSeat& seat) {
     BoundControl bound;
     bound.control = control;
@@ -351,16 +373,10 @@ class Builder {
       case Effect::kImpulse:
         if (!find_body(control.target, path + "/target", bound.body)) return;
         break;
-      case Effect::kMotorSpeed: {
-        const auto found = joints_.find(control.target);
-        if (found == joints_.end())
-          return complain(path + "/target", "names no joint: '" + control.target + "'");
-        bound.joint = found->second.first;
-        bound.motor_max = scene_.joints[found->second.second].motor_max;
-        if (scene_.joints[found->second.second].motor != solver::MotorKind::kSpeed)
-          return complain(path + "/target", "names a joint without a motor of speed");
+      case Effect::kMotorSpeed:
+      case Effect::kSteering:
+        if (!bind_joint(control, path, bound)) return;
         break;
-      }
       case Effect::kSpawn: {
         const auto found = prefabs_.find(control.target);
         if (found == prefabs_.end())

@@ -13,7 +13,7 @@ namespace cycloid::scenes {
 struct BoundControl {
   Control control;
   solver::BodyId body;    ///< force, torque, impulse
-  solver::JointId joint;  ///< motor_speed
+  solver::JointId joint;  ///< motor_speed, steering
   float motor_max = 0.0f;
   std::size_t prefab = 0;     ///< spawn
   std::size_t character = 0;  ///< walk, jump

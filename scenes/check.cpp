@@ -30,6 +30,9 @@ static void check_control(const Control& control, const std::string& path,
                     control.effect == Effect::kJump;
   if (once && axis) complain("source", "has to be a button: this effect happens once per press");
   if (!are_within(control.value, 1.0e9f)) complain("value", "is out of range");
+  const bool steers = control.effect == Effect::kSteering;
+  if (steers && !is_within(control.value[0], -1.6f, 1.6f))
+    complain("value", "has to be an angle within 1.6 rad");
   if (!are_within(control.position, 1.0e6f)) complain("position", "is out of range");
   if (!are_within(control.velocity, 1.0e4f)) complain("velocity", "is out of range");
   if (control.limit < 1 || control.limit > 256) complain("limit", "has to be 1 to 256");

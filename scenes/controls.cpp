@@ -79,6 +79,9 @@ static void apply(Built<D>& built, const BoundControl& bound, float amount, bool
     case Effect::kMotorSpeed:
       allow(world.set_motor(bound.joint, true, amount * bound.control.value[0], bound.motor_max));
       break;
+    case Effect::kSteering:
+      allow(world.set_steering(bound.joint, amount * bound.control.value[0]));
+      break;
     case Effect::kImpulse:
       if (pressed) allow(world.apply_impulse(bound.body, directed(world, bound, 1.0f)));
       break;

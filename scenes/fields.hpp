@@ -42,7 +42,8 @@ struct Names<solver::JointKind> {
       {"prismatic", solver::JointKind::kPrismatic}, {"wheel", solver::JointKind::kWheel},
       {"weld", solver::JointKind::kWeld},           {"motor", solver::JointKind::kMotor},
       {"target", solver::JointKind::kTarget},       {"gear", solver::JointKind::kGear},
-      {"pulley", solver::JointKind::kPulley},       {"curve", solver::JointKind::kCurve}};
+      {"pulley", solver::JointKind::kPulley},       {"curve", solver::JointKind::kCurve},
+      {"hinge", solver::JointKind::kHinge},         {"cone_twist", solver::JointKind::kConeTwist}};
 };
 template <>
 struct Names<solver::CurveKind> {
@@ -101,7 +102,8 @@ struct Names<Effect> {
       {"impulse", Effect::kImpulse},
       {"spawn", Effect::kSpawn},
       {"walk", Effect::kWalk},
-      {"jump", Effect::kJump}};
+      {"jump", Effect::kJump},
+      {"steering", Effect::kSteering}};
 };
 template <>
 struct Names<Frame> {
@@ -171,6 +173,9 @@ void fields(SceneJoint& j, F&& f) {
   f("anchor_a", j.anchor_a);
   f("anchor_b", j.anchor_b);
   f("axis", j.axis);
+  f("axle", j.axle);
+  f("steering", j.steering);
+  f("cone", j.cone);
   f("length", j.length);
   f("ratio", j.ratio);
   f("hertz", j.hertz);

@@ -68,6 +68,9 @@ struct SceneJoint {
   Triple anchor_a{};
   Triple anchor_b{};
   Triple axis{};
+  Triple axle{};
+  float steering = 0.0f;
+  float cone = 0.0f;
   float length = 0.0f;
   float ratio = 1.0f;
   float hertz = 0.0f;
@@ -148,7 +151,8 @@ enum class Effect : std::uint32_t {
   kImpulse,
   kSpawn,
   kWalk,
-  kJump
+  kJump,
+  kSteering
 };
 enum class Frame : std::uint32_t { kUnknown = 0, kWorld, kBody };
 
@@ -157,6 +161,7 @@ enum class Frame : std::uint32_t { kUnknown = 0, kWorld, kBody };
 ///   force        value [N] times the axis, while held; on `target`'s centre of mass.
 ///   torque       value[0] [N m] in the plane, value in space, times the axis.
 ///   motor_speed  value[0] [rad/s] times the axis becomes the speed of joint `target`.
+///   steering     value[0] [rad] times the axis becomes the steering of wheel `target`. Space.
 ///   impulse      value [N s], once when the button goes down. Buttons only.
 ///   spawn        a body of prefab `target` at `position` with `velocity`, once when the button
 ///                goes down; at most `limit` alive: the oldest makes room. Buttons only.

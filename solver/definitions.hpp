@@ -125,7 +125,8 @@ enum class JointKind : std::uint32_t {
   kDistance,   ///< |anchor_b - anchor_a| = length; a spring or, with limits, a rope.
   kRevolute,   ///< anchor_a = anchor_b; in space a ball joint. Coordinate: the angle, 2D.
   kPrismatic,  ///< b slides along `axis` of a without turning. Coordinate: the way, m.
-  kWheel,      ///< b turns freely and slides along `axis` on a spring. 2D. Coordinate: the way.
+  kWheel,      ///< b turns freely, in space about its axle, and slides along `axis` on a spring.
+               ///< Coordinate: the way.
   kWeld,       ///< b keeps its pose relative to a; soft where hertz > 0.
   kMotor,      ///< A weld that yields at force_max and torque_max; `target` is its angle, 2D.
   kTarget,     ///< anchor_b is drawn to anchor_a on a spring with at most force_max.
@@ -133,6 +134,8 @@ enum class JointKind : std::uint32_t {
   kPulley,     ///< |anchor_a - ground_a| + ratio |anchor_b - ground_b| = length.
   kCurve,      ///< anchor_b stays on a curve of body a; with limits, between offsets of it. 2D.
   kUser,       ///< Rows from a function of the user's: World::register_constraint.
+  kHinge,      ///< anchor_a = anchor_b; b turns about `axis` alone. 3D. Coordinate: the angle.
+  kConeTwist,  ///< A ball joint; with limits `axis` stays in a cone and its twist within. 3D.
 };
 
 /// Curves of a kCurve joint, in the frame of `anchor_a`.
@@ -158,14 +161,18 @@ struct JointDef {
   Vec<D> anchor_a = Vec<D>::zero();  ///< Frame of body a, from its origin, m.
   Vec<D> anchor_b = Vec<D>::zero();
   Vec<D> axis = Vec<D>::zero();  ///< Unit, frame of body a.
-  float length = 0.0f;           ///< m; > 0 for distance; pulley: 0 is what it is at creation.
-  float ratio = 1.0f;            ///< Gear and pulley; not 0.
+  /// Wheel in space: what b spins about at creation; unit, frame of body a, across `axis`.
+  Vec<D> axle = Vec<D>::zero();
+  float steering = 0.0f;  ///< Wheel in space: turn of the axle about `axis`, |.| <= 1.6 rad.
+  float cone = 0.0f;      ///< Cone-twist: largest angle of swing, 0 to pi rad.
+  float length = 0.0f;    ///< m; > 0 for distance; pulley: 0 is what it is at creation.
+  float ratio = 1.0f;     ///< Gear and pulley; not 0.
 
   /// A damped spring, the same for every mass. Distance and weld: 0 is rigid. Motor and target: 0
-  /// is tuning.joint_hertz. Revolute, prismatic and wheel: about `target`, 0 is none.
+  /// is tuning.joint_hertz. Revolute, hinge, prismatic and wheel: about `target`, 0 is none.
   float hertz = 0.0f;
   float damping_ratio = 0.0f;
-  float angular_hertz = 0.0f;  ///< Of the rotation of weld and motor.
+  float angular_hertz = 0.0f;  ///< Of the rotation of weld, motor and cone-twist (0: no spring).
   float angular_damping_ratio = 0.0f;
 
   bool limit_enabled = false;  ///< lower <= coordinate <= upper. Distance: a rope of that length.
@@ -178,8 +185,10 @@ struct JointDef {
   float drive_amplitude = 0.0f;
   float drive_hertz = 0.0f;
 
-  float force_max = 0.0f;            ///< Motor and target: N, >= 0.
-  float torque_max = 0.0f;           ///< Motor: N m, >= 0.
+  float force_max = 0.0f;  ///< Motor and target: N, >= 0.
+  /// N m, >= 0. Motor. Cone-twist: its friction or, with angular_hertz, its spring; 0: no friction,
+  /// and a spring without bound.
+  float torque_max = 0.0f;
   Vec<D> ground_a = Vec<D>::zero();  ///< Pulley: where the rope turns, world, m.
   Vec<D> ground_b = Vec<D>::zero();
   CurveKind curve = CurveKind::kCircle;

@@ -144,6 +144,9 @@ struct Joint {
   Vec<D> anchor_a;  ///< From the centre of mass, body frame, m.
   Vec<D> anchor_b;
   Vec<D> axis;
+  Vec<D> axle;
+  float steering;
+  float cone;
   float length;
   float ratio;
   float hertz;
@@ -175,6 +178,7 @@ struct Joint {
   float motor_impulse;
   float lower_impulse;
   float upper_impulse;
+  float cone_impulse;
 };
 
 template <int D>

@@ -100,7 +100,8 @@ static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch
   }
   for (const JointRow<D>& row : scratch.joint_rows) {
     const int rows = (row.solved_directly ? 0 : row.rows.count) + (row.spring_enabled ? 1 : 0) +
-                     (row.motor_enabled ? 1 : 0) + (row.limit_enabled ? 2 : 0);
+                     (row.motor_enabled ? 1 : 0) + (row.limit_enabled ? 2 : 0) +
+                     (has_cone(row) ? 1 : 0);
     statistics.rows_per_sweep += static_cast<std::uint32_t>(rows);
     if (row.solved_directly) statistics.direct_rows += static_cast<std::uint32_t>(row.rows.count);
   }

@@ -73,11 +73,6 @@ Error validate(const WorldDef<D>& def) {
   return {};
 }
 
-template <int N>
-static bool is_unit(const Vec<N>& v) {
-  return within(dot(v, v), 0.998f, 1.002f);
-}
-
 template <int D>
 Error validate(const BodyDef<D>& def) {
   if (def.kind < BodyKind::kStatic || def.kind > BodyKind::kParticle) return invalid("kind");

@@ -17,6 +17,8 @@ inline constexpr float kMassMin = 1.0e-9f;     ///< kg
 inline constexpr float kSizeMin = 1.0e-4f;     ///< m: radii and edges
 inline constexpr float kSizeMax = 1.0e6f;      ///< m
 
+inline constexpr float kSteeringMax = 1.6f;  ///< rad
+
 /// False for NaN too.
 inline bool within(float value, float lower, float upper) {
   return value >= lower && value <= upper;
@@ -29,6 +31,17 @@ bool within(const Vec<N>& vector, float bound) {
   return true;
 }
 
+template <int N>
+bool is_unit(const Vec<N>& vector) {
+  return within(dot(vector, vector), 0.998f, 1.002f);
+}
+
+/// Which kinds there are; `spin` is Dim<D>::kSpin.
+bool exists(JointKind kind, int spin);
+bool needs_axis(JointKind kind);
+/// Whether this axle goes with this axis: none in the plane, in space a unit vector across it.
+bool fits_wheel(const Vec<2>& axis, const Vec<2>& axle);
+bool fits_wheel(const Vec<3>& axis, const Vec<3>& axle);
 /// Which kinds have a coordinate that motors drive and which take limits; `spin` is Dim<D>::kSpin.
 bool has_coordinate(JointKind kind, int spin);
 bool has_limits(JointKind kind, int spin);

@@ -1,3 +1,4 @@
+#include "solver/trig.hpp"
 #include "solver/validate.hpp"
 
 namespace cycloid::solver {
@@ -6,8 +7,17 @@ static Error invalid(const char* field) {
   return {Code::kInvalid, field};
 }
 
-static bool is_planar(JointKind kind) {
-  return kind == JointKind::kWheel || kind == JointKind::kGear || kind == JointKind::kCurve;
+bool exists(JointKind kind, int spin) {
+  switch (kind) {
+    case JointKind::kGear:
+    case JointKind::kCurve:
+      return spin == 1;
+    case JointKind::kHinge:
+    case JointKind::kConeTwist:
+      return spin > 1;
+    default:
+      return kind >= JointKind::kDistance && kind <= JointKind::kConeTwist;
+  }
 }
 
 bool has_coordinate(JointKind kind, int spin) {
@@ -15,10 +25,12 @@ bool has_coordinate(JointKind kind, int spin) {
     case JointKind::kDistance:
     case JointKind::kPrismatic:
     case JointKind::kUser:
+    case JointKind::kWheel:
       return true;
     case JointKind::kRevolute:
-    case JointKind::kWheel:
       return spin == 1;
+    case JointKind::kHinge:
+      return spin > 1;
     default:
       return false;
   }
@@ -26,16 +38,39 @@ bool has_coordinate(JointKind kind, int spin) {
 
 bool has_limits(JointKind kind, int spin) {
   const bool of_curve = kind == JointKind::kCurve && spin == 1;
-  return has_coordinate(kind, spin) || kind == JointKind::kPulley || of_curve;
+  const bool of_cone = kind == JointKind::kConeTwist && spin > 1;
+  return has_coordinate(kind, spin) || kind == JointKind::kPulley || of_curve || of_cone;
 }
 
 float limit_max(JointKind kind) {
-  return kind == JointKind::kRevolute ? 3.2f : kSizeMax;
+  const bool turns =
+      kind == JointKind::kRevolute || kind == JointKind::kHinge || kind == JointKind::kConeTwist;
+  return turns ? 3.2f : kSizeMax;
 }
 
+bool needs_axis(JointKind kind) {
+  return kind == JointKind::kPrismatic || kind == JointKind::kWheel || kind == JointKind::kHinge ||
+         kind == JointKind::kConeTwist;
+}
+
+bool fits_wheel(const Vec<2>&, const Vec<2>& axle) {
+  return dot(axle, axle) == 0.0f;
+}
+bool fits_wheel(const Vec<3>& axis, const Vec<3>& axle) {
+  return is_unit(axle) && within(dot(axis, axle), -1.0e-3f, 1.0e-3f);
+}
+
+/// What only joints of space have.
 template <int D>
-static bool needs_axis(const JointDef<D>& def) {
-  return def.kind == JointKind::kPrismatic || def.kind == JointKind::kWheel;
+static Error validate_turns(const JointDef<D>& def) {
+  const float axle = dot(def.axle, def.axle);
+  const bool wheel = def.kind == JointKind::kWheel;
+  if (axle != 0.0f && (Dim<D>::kSpin == 1 || !is_unit(def.axle))) return invalid("axle");
+  if (wheel && !fits_wheel(def.axis, def.axle)) return invalid("axle");
+  const float most = Dim<D>::kSpin == 1 ? 0.0f : kSteeringMax;
+  if (!within(def.steering, -most, most)) return invalid("steering");
+  if (!within(def.cone, 0.0f, kPi)) return invalid("cone");
+  return {};
 }
 
 template <int D>
@@ -43,9 +78,10 @@ static Error validate_geometry(const JointDef<D>& def) {
   if (!within(def.anchor_a, kSizeMax)) return invalid("anchor_a");
   if (!within(def.anchor_b, kSizeMax)) return invalid("anchor_b");
   const float axis = dot(def.axis, def.axis);
-  const bool unit = within(axis, 0.998f, 1.002f);
-  if (needs_axis(def) && !unit) return invalid("axis");
+  const bool unit = is_unit(def.axis);
+  if (needs_axis(def.kind) && !unit) return invalid("axis");
   if (!unit && axis != 0.0f) return invalid("axis");
+  if (const Error error = validate_turns(def); !error.ok()) return error;
   const bool distance = def.kind == JointKind::kDistance;
   const bool rope = def.limit_enabled && def.hertz == 0.0f;
   if (distance && !rope && !within(def.length, kSizeMin, kSizeMax)) return invalid("length");
@@ -92,8 +128,7 @@ static Error validate_drives(const JointDef<D>& def) {
 
 template <int D>
 Error validate(const JointDef<D>& def) {
-  if (def.kind < JointKind::kDistance || def.kind > JointKind::kUser) return invalid("kind");
-  if (is_planar(def.kind) && Dim<D>::kSpin != 1) return invalid("kind");
+  if (!exists(def.kind, Dim<D>::kSpin)) return invalid("kind");
   if (def.body_a == def.body_b) return invalid("body_b");
   if (const Error error = validate_geometry(def); !error.ok()) return error;
   return validate_drives(def);

@@ -1,4 +1,5 @@
 #include "solver/solids/validate_polyhedra.hpp"
+#include "solver/trig.hpp"
 #include "solver/validate.hpp"
 #include "solver/visit.hpp"
 
@@ -118,18 +119,29 @@ static Error validate_shapes(const WorldState<D>& state) {
   return {};
 }
 
+/// What the rows of rotation and sliding rely on: directions of length 1, angles in range.
+template <int D>
+static bool turns_fit(const Joint<D>& joint) {
+  const float most = Dim<D>::kSpin == 1 ? 0.0f : kSteeringMax;
+  if (!exists(joint.kind, Dim<D>::kSpin)) return false;
+  if (!within(dot(joint.reference, joint.reference), 0.99f, 1.01f)) return false;
+  if (needs_axis(joint.kind) && !is_unit(joint.axis)) return false;
+  if (joint.kind == JointKind::kWheel && !fits_wheel(joint.axis, joint.axle)) return false;
+  return within(joint.steering, -most, most) && within(joint.cone, 0.0f, kPi);
+}
+
 template <int D>
 static Error validate_joints(const WorldState<D>& state) {
   for (std::size_t i = 0; i < state.joints.size(); ++i) {
     const Joint<D>& joint = state.joints[i];
-    if (joint.kind > JointKind::kUser || !is_finite(joint)) return corrupt("joint", i);
+    if (joint.kind > JointKind::kConeTwist || !is_finite(joint)) return corrupt("joint", i);
     if (joint.motor > MotorKind::kPosition || joint.curve > CurveKind::kPolyline)
       return corrupt("joint", i);
     if (joint.kind == JointKind::kFree) continue;
     for (const std::uint32_t body : {joint.body_a, joint.body_b})
       if (body >= state.bodies.size() || state.bodies[body].kind == BodyKind::kFree)
         return corrupt("joint", i);
-    if (joint.body_a == joint.body_b) return corrupt("joint", i);
+    if (joint.body_a == joint.body_b || !turns_fit(joint)) return corrupt("joint", i);
     const bool sized = joint.kind == JointKind::kCurve && joint.curve != CurveKind::kPolyline;
     if (sized && !(joint.size[0] > 0.0f)) return corrupt("joint", i);
     if (sized && joint.curve == CurveKind::kEllipse && !(joint.size[1] > 0.0f))

@@ -139,6 +139,9 @@ constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
   f("anchor_a", r.anchor_a);
   f("anchor_b", r.anchor_b);
   f("axis", r.axis);
+  f("axle", r.axle);
+  f("steering", r.steering);
+  f("cone", r.cone);
   f("length", r.length);
   f("ratio", r.ratio);
   f("hertz", r.hertz);
@@ -170,6 +173,7 @@ constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
   f("motor_impulse", r.motor_impulse);
   f("lower_impulse", r.lower_impulse);
   f("upper_impulse", r.upper_impulse);
+  f("cone_impulse", r.cone_impulse);
 }
 
 template <class R, class F, int D>

@@ -123,6 +123,8 @@ class World {
   Error set_motor(JointId id, bool enabled, float speed, float max);
   /// A position motor: holds the coordinate at `target` [rad or m] with at most `max`.
   Error set_target(JointId id, float target, float max);
+  /// The angle [rad, |.| <= 1.6] by which a wheel in space is turned about its suspension.
+  Error set_steering(JointId id, float angle);
   /// Where on body a the joint holds on, in the frame of that body; moves the point of a mouse.
   Error set_anchor(JointId id, const Vec<D>& anchor_a);
   Error set_limits(JointId id, bool enabled, float lower, float upper);
@@ -146,7 +148,7 @@ class World {
   Result<BodyView<D>> body(BodyId id) const;
   /// Live bodies in the order of their slots.
   std::vector<BodyView<D>> bodies() const;
-  /// Angle of b relative to a since creation, rad in (-pi, pi]. 2D revolute joints.
+  /// Angle of b relative to a since creation, rad in (-pi, pi]. 2D: revolute joints, 3D: hinges.
   Result<float> joint_angle(JointId id) const;
   /// Distance between the two anchors, m.
   Result<float> joint_separation(JointId id) const;

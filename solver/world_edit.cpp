@@ -172,6 +172,9 @@ static Joint<D> joint_from(const JointDef<D>& def, const Body<D>& a, const Body<
   joint.anchor_a = anchor_from(a, def.anchor_a);
   joint.anchor_b = anchor_from(b, def.anchor_b);
   joint.axis = def.axis;
+  joint.axle = def.axle;
+  joint.steering = def.steering;
+  joint.cone = def.cone;
   joint.length = def.length;
   joint.ratio = def.ratio;
   joint.hertz = def.hertz;

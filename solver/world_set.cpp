@@ -1,3 +1,4 @@
+#include "solver/constraints/joints/swing_twist.hpp"
 #include "solver/step_scratch.hpp"
 #include "solver/trig.hpp"
 #include "solver/validate.hpp"
@@ -183,6 +184,18 @@ Error World<D>::set_target(JointId id, float target, float max) {
 }
 
 template <int D>
+Error World<D>::set_steering(JointId id, float angle) {
+  if (const Error error = check(id); !error.ok()) return error;
+  Joint<D>& joint = state_.joints[id.index];
+  if (joint.kind != JointKind::kWheel || Dim<D>::kSpin == 1) return invalid("joint");
+  if (!within(angle, -kSteeringMax, kSteeringMax)) return invalid("angle");
+  if (joint.steering == angle) return {};
+  wake_both(state_, joint);
+  joint.steering = angle;
+  return {};
+}
+
+template <int D>
 Error World<D>::set_anchor(JointId id, const Vec<D>& anchor_a) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(anchor_a, kSizeMax)) return invalid("anchor_a");
@@ -236,8 +249,8 @@ static void scale_impulses(float scale, WorldState<D>& state) {
   for (Joint<D>& joint : state.joints) {
     if (joint.kind == JointKind::kFree) continue;
     for (float& impulse : joint.impulse) impulse *= scale;
-    for (float* impulse :
-         {&joint.spring_impulse, &joint.motor_impulse, &joint.lower_impulse, &joint.upper_impulse})
+    for (float* impulse : {&joint.spring_impulse, &joint.motor_impulse, &joint.lower_impulse,
+                           &joint.upper_impulse, &joint.cone_impulse})
       *impulse *= scale;
   }
 }
@@ -259,15 +272,19 @@ static float angle_of(const Body<2>& a, const Body<2>& b, const Joint<2>& joint)
   const Rotation<2> since = compose(Rotation<2>{{joint.reference[0], -joint.reference[1]}}, turned);
   return atan2(since[1], since[0]);
 }
-static float angle_of(const Body<3>&, const Body<3>&, const Joint<3>&) {
-  return 0.0f;
+/// Angle about a hinge's axis.
+static float angle_of(const Body<3>& a, const Body<3>& b, const Joint<3>& joint) {
+  const Rotation<3> turned = compose(conjugate(a.rotation), b.rotation);
+  const Rotation<3> since = compose(conjugate(joint.reference), turned);
+  return twist_angle(since, rotate_back(joint.reference, joint.axis));
 }
 
 template <int D>
 Result<float> World<D>::joint_angle(JointId id) const {
   if (const Error error = check(id); !error.ok()) return error;
   const Joint<D>& joint = state_.joints[id.index];
-  if (joint.kind != JointKind::kRevolute || Dim<D>::kSpin != 1) return invalid("joint");
+  const JointKind turning = Dim<D>::kSpin == 1 ? JointKind::kRevolute : JointKind::kHinge;
+  if (joint.kind != turning) return invalid("joint");
   return angle_of(state_.bodies[joint.body_a], state_.bodies[joint.body_b], joint);
 }
 
@@ -297,6 +314,8 @@ template Error World<2>::set_filter(BodyId, std::uint32_t, const Filter&);
 template Error World<2>::set_motor(JointId, bool, float, float);
 template Error World<2>::set_target(JointId, float, float);
 template Error World<2>::set_anchor(JointId, const Vec<2>&);
+template Error World<2>::set_steering(JointId, float);
+template Error World<3>::set_steering(JointId, float);
 template Error World<3>::set_target(JointId, float, float);
 template Error World<3>::set_anchor(JointId, const Vec<3>&);
 template Error World<2>::set_limits(JointId, bool, float, float);

@@ -17,8 +17,8 @@ static void factor_block(int begin, int end, JointRow<D>& joint,
 
 /// K_ll - K_le K_ee^-1 K_el, inverted, and K_ee^-1 K_el: row l with the equalities e held.
 template <int D>
-static typename JointRow<D>::Held hold_block(const JointRow<D>& joint, const Row<D>& row) {
-  typename JointRow<D>::Held held{};
+static HeldRow<D> hold_block(const JointRow<D>& joint, const Row<D>& row) {
+  HeldRow<D> held{};
   const float k = row_coupling(joint, row, row);
   const int count = joint.rows.split;
   float across[JointRow<D>::kRows];
@@ -32,6 +32,11 @@ static typename JointRow<D>::Held hold_block(const JointRow<D>& joint, const Row
   // A row that the equalities decide already has nothing to give.
   held.mass = left > 1.0e-6f * k ? 1.0f / left : 0.0f;
   return held;
+}
+
+static void hold_cone(JointRow<2>&) {}
+static void hold_cone(JointRow<3>& row) {
+  if (has_cone(row)) row.held_cone = hold_block(row, row.rows.cone_axis);
 }
 
 template <int D>
@@ -52,6 +57,7 @@ void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a,
   if (!row.rows.has_axis || !acts) return;
   row.axis = hold_block(row, row.rows.axis);
   row.motor = row.rows.has_motor_axis ? hold_block(row, row.rows.motor_axis) : row.axis;
+  hold_cone(row);
 }
 
 template void evaluate_rows(const WorldState<2>&, float, const Motion<2>&, const Motion<2>&,

@@ -9,9 +9,27 @@
 
 namespace cycloid::solver {
 
+/// What an impulse along one row does with the first block of equalities held: what it asks of them
+/// goes with it, so that a limit at the end of a long arm is met at once.
+template <int D>
+struct HeldRow {
+  float mass;
+  float reaction[Dim<D>::kFreedoms];
+};
+
+/// The part of a joint's row that only space has.
+template <int D>
+struct ConeLimit {};
+template <>
+struct ConeLimit<3> {
+  HeldRow<3> held_cone;
+  float cone;  ///< rad.
+  float cone_impulse;
+};
+
 /// One joint during a tick: its rows at the present poses and the impulses they accumulate.
 template <int D>
-struct JointRow {
+struct JointRow : ConeLimit<D> {
   static constexpr int kRows = Dim<D>::kFreedoms;
 
   std::uint32_t joint;  ///< Slot.
@@ -24,15 +42,8 @@ struct JointRow {
 
   JointRows<D> rows;
   BlockFactor<kRows> blocks[2];  ///< Of the equalities before `rows.split`, and from it on.
-  /// Of the coordinate and of the motor's row, with the first block of equalities held: what an
-  /// impulse along the row asks of them goes with it, so that a limit at the end of a long arm is
-  /// met at once.
-  struct Held {
-    float mass;
-    float reaction[kRows];
-  };
-  Held axis;
-  Held motor;
+  HeldRow<D> axis;               ///< Of the coordinate.
+  HeldRow<D> motor;
 
   Softness spring_of[2];  ///< Of the blocks; meant where is_spring.
   bool is_spring[2];
@@ -76,8 +87,8 @@ void apply_row(const JointRow<D>& joint, const Row<D>& row, float impulse, Motio
 
 /// An impulse along a row that leaves the first block of equalities as satisfied as it was.
 template <int D>
-void apply_held(JointRow<D>& joint, const Row<D>& row, const typename JointRow<D>::Held& held,
-                float impulse, Motion<D>& a, Motion<D>& b) {
+void apply_held(JointRow<D>& joint, const Row<D>& row, const HeldRow<D>& held, float impulse,
+                Motion<D>& a, Motion<D>& b) {
   apply_row(joint, row, impulse, a, b);
   for (int i = 0; i < joint.rows.split; ++i) {
     const float change = -held.reaction[i] * impulse;
@@ -93,6 +104,22 @@ float row_coupling(const JointRow<D>& joint, const Row<D>& i, const Row<D>& j) {
           dot(i.angular_a, joint.mass_a.inverse_inertia * j.angular_a)) +
          (joint.mass_b.inverse_mass * dot(i.linear_b, j.linear_b) +
           dot(i.angular_b, joint.mass_b.inverse_inertia * j.angular_b));
+}
+
+/// Joints of the plane have no cone; these let the kernel say so at no cost.
+inline bool has_cone(const JointRow<2>&) {
+  return false;
+}
+inline bool has_cone(const JointRow<3>& row) {
+  return row.rows.has_cone_axis;
+}
+inline void store_cone_impulse(const JointRow<2>&, Joint<2>&) {}
+inline void store_cone_impulse(const JointRow<3>& row, Joint<3>& joint) {
+  joint.cone_impulse = row.cone_impulse;
+}
+inline void forget_cone_impulse(JointRow<2>&) {}
+inline void forget_cone_impulse(JointRow<3>& row) {
+  row.cone_impulse = 0.0f;
 }
 
 /// A body without mass is read by joints of the same colour at the same time, so it is not written.

@@ -6,6 +6,11 @@ namespace cycloid::solver {
 
 /// The one kernel of all joints: whatever the kind, its rows are solved as written here.
 
+inline void warm_start_cone(const JointRow<2>&, Motion<2>&, Motion<2>&) {}
+inline void warm_start_cone(const JointRow<3>& row, Motion<3>& a, Motion<3>& b) {
+  if (has_cone(row)) apply_row(row, row.rows.cone_axis, -row.cone_impulse, a, b);
+}
+
 template <int D>
 void warm_start(const JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
   for (int i = 0; i < row.rows.count; ++i)
@@ -14,6 +19,7 @@ void warm_start(const JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
   apply_row(row, row.rows.axis, row.spring_impulse + row.lower_impulse - row.upper_impulse, a, b);
   apply_row(row, row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis, row.motor_impulse,
             a, b);
+  warm_start_cone(row, a, b);
 }
 
 /// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale lambda over the equalities
@@ -80,10 +86,12 @@ void solve_drives(JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
   row.motor_impulse = accumulated;
 }
 
-/// One limit: `room` is what is left until it [m or rad], the impulse pushes away from it.
+/// One limit along `axis`: `room` is what is left until it [m or rad], the impulse pushes away from
+/// it.
 template <int D>
-void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, float room,
-                 float sign, float& impulse, Motion<D>& a, Motion<D>& b) {
+void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, const Row<D>& axis,
+                 const HeldRow<D>& held, float room, float sign, float& impulse, Motion<D>& a,
+                 Motion<D>& b) {
   Softness softness = kRigid;
   float bias = 0.0f;
   if (room > 0.0f) {
@@ -92,30 +100,43 @@ void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, f
     softness = sweep == Sweep::kPseudo ? context.pseudo : context.joint;
     bias = softness.bias_rate * room;
   }
-  const float speed = sign * row_speed(row.rows.axis, a, b);
+  const float speed = sign * row_speed(axis, a, b);
   const float change =
-      -row.axis.mass * softness.mass_scale * (speed + bias) - softness.impulse_scale * impulse;
+      -held.mass * softness.mass_scale * (speed + bias) - softness.impulse_scale * impulse;
   const float accumulated = max(impulse + change, 0.0f);
-  apply_held(row, row.rows.axis, row.axis, sign * (accumulated - impulse), a, b);
+  apply_held(row, axis, held, sign * (accumulated - impulse), a, b);
   impulse = accumulated;
 }
 
+inline void solve_cone(const StepContext<2>&, Sweep, JointRow<2>&, Motion<2>&, Motion<2>&) {}
+inline void solve_cone(const StepContext<3>& context, Sweep sweep, JointRow<3>& row, Motion<3>& a,
+                       Motion<3>& b) {
+  if (!has_cone(row)) return;
+  solve_limit(context, sweep, row, row.rows.cone_axis, row.held_cone,
+              row.cone - row.rows.cone_axis.error, -1.0f, row.cone_impulse, a, b);
+}
+
 /// One sweep over a joint. The limit comes after the motor, so it wins; the equalities come last,
-/// so they are what is exact when the sweep ends.
+/// so they are what is exact when the sweep ends. What rubs in a cone counts as a motor.
 template <int D>
 void solve(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, Motion<D>& a,
            Motion<D>& b) {
+  const bool rubs_first = has_cone(row);
+  if (rubs_first) solve_block(context, sweep, 1, row, a, b);
   if (row.rows.has_axis) {
     if (sweep != Sweep::kPseudo) solve_drives(row, a, b);
     if (row.limit_enabled) {
       const float coordinate = row.rows.axis.error;
-      solve_limit(context, sweep, row, coordinate - row.lower, 1.0f, row.lower_impulse, a, b);
-      solve_limit(context, sweep, row, row.upper - coordinate, -1.0f, row.upper_impulse, a, b);
+      solve_limit(context, sweep, row, row.rows.axis, row.axis, coordinate - row.lower, 1.0f,
+                  row.lower_impulse, a, b);
+      solve_limit(context, sweep, row, row.rows.axis, row.axis, row.upper - coordinate, -1.0f,
+                  row.upper_impulse, a, b);
     }
+    solve_cone(context, sweep, row, a, b);
   }
   if (row.solved_directly) return;
   solve_block(context, sweep, 0, row, a, b);
-  solve_block(context, sweep, 1, row, a, b);
+  if (!rubs_first) solve_block(context, sweep, 1, row, a, b);
 }
 
 /// x += M^-1 J^T lambda on poses, rotations exactly.
@@ -128,6 +149,23 @@ void move_by_row(const JointRow<D>& joint, const Row<D>& row, float lambda, Moti
   turn_by(joint.mass_b.inverse_inertia * (lambda * row.angular_b), b);
 }
 
+/// Moves along a row and leaves the first block of equalities as satisfied as it was.
+template <int D>
+void move_held(JointRow<D>& row, const Row<D>& along, const HeldRow<D>& held, float lambda,
+               Motion<D>& a, Motion<D>& b) {
+  move_by_row(row, along, lambda, a, b);
+  for (int i = 0; i < row.rows.split; ++i)
+    move_by_row(row, row.rows.rows[static_cast<std::size_t>(i)], -held.reaction[i] * lambda, a, b);
+}
+
+inline void correct_cone(float, JointRow<2>&, Motion<2>&, Motion<2>&) {}
+inline void correct_cone(float most, JointRow<3>& row, Motion<3>& a, Motion<3>& b) {
+  if (!has_cone(row)) return;
+  const float beyond = max(row.rows.cone_axis.error - row.cone, 0.0f);
+  if (beyond == 0.0f) return;
+  move_held(row, row.rows.cone_axis, row.held_cone, -row.held_cone.mass * min(beyond, most), a, b);
+}
+
 /// Non-linear Gauss-Seidel: lambda = -K^-1 C with C and J at the present poses, C held to the
 /// largest correction; what is satisfied is not touched. @pre rows were evaluated at these poses.
 /// Source: Catto, "Understanding Constraints" (GDC 2014).
@@ -138,12 +176,8 @@ void correct_joint(const StepContext<D>& context, JointRow<D>& row, Motion<D>& a
     const float coordinate = row.rows.axis.error;
     const float beyond = min(coordinate - row.lower, 0.0f) + max(coordinate - row.upper, 0.0f);
     const float lambda = -row.axis.mass * clamp(beyond, -most, most);
-    if (beyond != 0.0f) {
-      move_by_row(row, row.rows.axis, lambda, a, b);
-      for (int i = 0; i < row.rows.split; ++i)
-        move_by_row(row, row.rows.rows[static_cast<std::size_t>(i)], -row.axis.reaction[i] * lambda,
-                    a, b);
-    }
+    if (beyond != 0.0f) move_held(row, row.rows.axis, row.axis, lambda, a, b);
+    correct_cone(most, row, a, b);
   }
   for (int index = 0; index < 2; ++index) {
     const int begin = index == 0 ? 0 : row.rows.split;

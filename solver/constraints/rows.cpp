@@ -38,6 +38,10 @@ void rows_of(const JointFrame<D>& frame, JointRows<D>& rows) {
       return pulley_rows(frame, rows);
     case JointKind::kCurve:
       return curve_rows(frame, rows);
+    case JointKind::kHinge:
+      return hinge_rows(frame, rows);
+    case JointKind::kConeTwist:
+      return cone_twist_rows(frame, rows);
     case JointKind::kUser:
     case JointKind::kFree:
       return;

@@ -23,6 +23,15 @@ struct Row {
   float rate = 0.0f;
 };
 
+/// One more row that joints of space may have, whose error has an upper limit: the swing of a cone.
+template <int D>
+struct ConeRow {};
+template <>
+struct ConeRow<3> {
+  bool has_cone_axis = false;
+  Row<3> cone_axis;
+};
+
 /// What a joint asks for at the present poses.
 ///
 /// Rows [0, count) are equalities C = 0. Those before `split` are solved together as one block, and
@@ -30,7 +39,7 @@ struct Row {
 /// whose error is the joint's coordinate: springs, limits and, unless `motor_axis` is another,
 /// motors act along it.
 template <int D>
-struct JointRows {
+struct JointRows : ConeRow<D> {
   int count = 0;
   int split = 0;
   std::array<Row<D>, Dim<D>::kFreedoms> rows;
@@ -102,6 +111,17 @@ Row<D> translation_row(const JointFrame<D>& frame, const Vec<D>& direction) {
   row.angular_b = moment(frame.r_b, direction);
   row.error = dot(direction, frame.offset);
   return row;
+}
+
+/// Directions across `joint.axis`, in the world.
+inline void directions_across(const JointFrame<2>& frame, Vec<2> (&out)[1]) {
+  tangents(rotate(frame.rotation_a, frame.joint.axis), out);
+}
+/// In space they have to turn with a: a basis chosen in the world would jump as the axis turns, and
+/// with it the impulses that the next substep starts from.
+inline void directions_across(const JointFrame<3>& frame, Vec<3> (&out)[2]) {
+  tangents(frame.joint.axis, out);
+  for (Vec<3>& direction : out) direction = rotate(frame.rotation_a, direction);
 }
 
 /// C = anchor_b - anchor_a along the axes of body a: D rows. Because the axes turn with a, both

@@ -47,6 +47,7 @@ void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
     joint.motor_impulse = row.motor_impulse;
     joint.lower_impulse = row.lower_impulse;
     joint.upper_impulse = row.upper_impulse;
+    store_cone_impulse(row, joint);
     if (joint.kind != JointKind::kGear) continue;
     joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
                        unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};

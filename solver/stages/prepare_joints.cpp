@@ -12,23 +12,29 @@ static void set_blocks(const StepContext<D>& context, const Joint<D>& joint, Joi
   const bool yields = joint.kind == JointKind::kMotor || joint.kind == JointKind::kTarget;
   const bool weld = joint.kind == JointKind::kWeld;
   row.is_spring[0] = yields || (weld && joint.hertz > 0.0f);
-  row.is_spring[1] = yields || (weld && joint.angular_hertz > 0.0f);
+  // Friction in a ball joint is a spring without stiffness: it damps all that it may.
+  const bool springs = joint.kind == JointKind::kConeTwist && joint.angular_hertz > 0.0f;
+  const bool rubs = joint.kind == JointKind::kConeTwist && !springs && joint.torque_max > 0.0f;
+  row.is_spring[1] = yields || springs || rubs || (weld && joint.angular_hertz > 0.0f);
   row.spring_of[0] = joint.hertz > 0.0f
                          ? spring_softness(joint.hertz, joint.damping_ratio, context.h)
                          : context.motor;
   row.spring_of[1] =
       joint.angular_hertz > 0.0f
           ? spring_softness(joint.angular_hertz, joint.angular_damping_ratio, context.h)
-          : context.motor;
+      : rubs ? kRigid
+             : context.motor;
   row.impulse_max[0] = yields ? context.h * joint.force_max : kUnbounded;
-  row.impulse_max[1] = joint.kind == JointKind::kMotor ? context.h * joint.torque_max : kUnbounded;
+  const bool bounded =
+      joint.kind == JointKind::kMotor || rubs || (springs && joint.torque_max > 0.0f);
+  row.impulse_max[1] = bounded ? context.h * joint.torque_max : kUnbounded;
 }
 
 /// What acts along the coordinate.
 template <int D>
 static void set_axis(const StepContext<D>& context, const Joint<D>& joint, JointRow<D>& row) {
   const bool of_position = joint.kind == JointKind::kWeld || joint.kind == JointKind::kMotor ||
-                           joint.kind == JointKind::kTarget;
+                           joint.kind == JointKind::kTarget || joint.kind == JointKind::kConeTwist;
   row.motor_holds_position = joint.motor == MotorKind::kPosition;
   row.motor_enabled = joint.motor != MotorKind::kOff;
   row.spring_enabled = joint.hertz > 0.0f && !of_position && !row.motor_holds_position;
@@ -54,6 +60,12 @@ static void take_impulses(float share, const Joint<D>& joint, JointRow<D>& row) 
   row.upper_impulse = row.limit_enabled ? share * joint.upper_impulse : 0.0f;
 }
 
+static void set_cone(float, const Joint<2>&, JointRow<2>&) {}
+static void set_cone(float share, const Joint<3>& joint, JointRow<3>& row) {
+  row.cone = joint.cone;
+  row.cone_impulse = row.limit_enabled ? share * joint.cone_impulse : 0.0f;
+}
+
 template <int D>
 static JointRow<D> make_row(const StepContext<D>& context, const WorldState<D>& state,
                             const StepScratch<D>& scratch, std::uint32_t slot) {
@@ -71,6 +83,7 @@ static JointRow<D> make_row(const StepContext<D>& context, const WorldState<D>& 
   set_blocks(context, joint, row);
   set_axis(context, joint, row);
   take_impulses(context.tuning.warm_starting, joint, row);
+  set_cone(context.tuning.warm_starting, joint, row);
   return row;
 }
 

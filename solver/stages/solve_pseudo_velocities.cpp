@@ -24,6 +24,7 @@ static void forget_impulses(std::vector<JointRow<D>>& rows) {
     for (float& impulse : row.impulse) impulse = 0.0f;
     row.lower_impulse = 0.0f;
     row.upper_impulse = 0.0f;
+    forget_cone_impulse(row);
   }
 }
 

@@ -5,7 +5,7 @@
 namespace cycloid::solver {
 
 /// The rows of each kind of joint; joints/*.cpp have C, Cdot, J, limits and sources. Kinds that
-/// exist in the plane only write nothing in space, where `validate` refuses them.
+/// exist in the plane or in space only write nothing in the other, where `validate` refuses them.
 
 template <int D>
 void distance_rows(const JointFrame<D>& frame, JointRows<D>& rows);
@@ -27,5 +27,9 @@ template <int D>
 void pulley_rows(const JointFrame<D>& frame, JointRows<D>& rows);
 template <int D>
 void curve_rows(const JointFrame<D>& frame, JointRows<D>& rows);
+template <int D>
+void hinge_rows(const JointFrame<D>& frame, JointRows<D>& rows);
+template <int D>
+void cone_twist_rows(const JointFrame<D>& frame, JointRows<D>& rows);
 
 }  // namespace cycloid::solver

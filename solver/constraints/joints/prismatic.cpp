@@ -12,7 +12,7 @@ template <int D>
 void prismatic_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
   const Vec<D> u = rotate(frame.rotation_a, frame.joint.axis);
   Vec<D> across[Dim<D>::kTangents];
-  tangents(u, across);
+  directions_across(frame, across);
   for (const Vec<D>& t : across)
     rows.rows[static_cast<std::size_t>(rows.count++)] = translation_row(frame, t);
   append_rotation_rows(frame, rows);

@@ -1,4 +1,6 @@
 #include "solver/constraints/joints/joints.hpp"
+#include "solver/constraints/joints/swing_twist.hpp"
+#include "solver/motion.hpp"
 
 namespace cycloid::solver {
 
@@ -23,7 +25,30 @@ void wheel_rows(const JointFrame<2>& frame, JointRows<2>& rows) {
   rows.motor_axis.angular_b[0] = 1.0f;
 }
 
+/// A wheel b on a chassis a in space: it slides along the axis u of a and turns about its axle.
+///   C = t . d [m] for two directions t across u, and the axle e' of b along e, the axle of a
+///   turned about u by the angle of steering: 4 equalities, one block, J as in translation_row and
+///   append_axis_rows, whose directions u and e x u turn with e. Impulses N s and N m s, unbounded.
+/// The coordinate u . d [m] takes the suspension: a spring about `target` and limits. The motor
+/// acts on the spin about the axle: J = (0, -e', 0, e'), rad/s, N m.
+/// Sources: as in the plane.
 template <>
-void wheel_rows(const JointFrame<3>&, JointRows<3>&) {}
+void wheel_rows(const JointFrame<3>& frame, JointRows<3>& rows) {
+  const Joint<3>& joint = frame.joint;
+  Vec<3> across[2];
+  directions_across(frame, across);
+  for (const Vec<3>& t : across)
+    rows.rows[static_cast<std::size_t>(rows.count++)] = translation_row(frame, t);
+  const Vec<3> steered = rotate(rotation_by(joint.steering * joint.axis), joint.axle);
+  const AxisPair pair = axis_pair(frame, joint.axle, steered);
+  const Vec<3> u = rotate(frame.rotation_a, joint.axis);
+  append_axis_rows(pair, u, cross(pair.of_a, u), rows);
+  rows.split = rows.count;
+  rows.has_axis = true;
+  rows.axis = translation_row(frame, u);
+  rows.has_motor_axis = true;
+  rows.motor_axis.angular_a = -pair.of_b;
+  rows.motor_axis.angular_b = pair.of_b;
+}
 
 }  // namespace cycloid::solver
