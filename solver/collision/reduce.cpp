@@ -55,7 +55,7 @@ static Choice choose(std::span<const Candidate> candidates, const Vec<3>& normal
   const Vec<3> base = q - p;
   const Vec<3> across = cross(normal, base);
   // A triangle flatter than this part of its base squared is a line.
-  const float flat = 1.0e-4f * dot(base, base);
+  const float flat = 1.0e-5f * dot(base, base);
   const std::size_t third = largest_of(
       none, none, flat, [&](std::size_t i) { return abs(dot(across, candidates[i].at - p)); });
   if (third == none) {
