@@ -155,11 +155,7 @@ Manifold<3> box_against_box(const Solid& a, const Solid& b, const Vec<3>& a_to_b
   if (edges.separation > margin) return {};
   if (edges.separation > kNoSeparation)
     return touch_edges(edges_on(edges, a, b, relative), a_to_b, margin);
-  const Solid& reference = on_b ? b : a;
-  const Solid& incident = on_b ? a : b;
-  const std::uint32_t opposed = opposed_face(incident, reference.normals[face.face]);
-  return touch_faces({reference, incident, face.face, opposed, on_b, face.separation}, tolerance,
-                     a_to_b, margin);
+  return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, a_to_b, margin);
 }
 
 }  // namespace cycloid::solver

@@ -94,6 +94,14 @@ std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal) {
   return best;
 }
 
+FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_b,
+                    float separation) {
+  const Solid& reference = on_b ? b : a;
+  const Solid& incident = on_b ? a : b;
+  return {reference, incident,  face, opposed_face(incident, reference.normals[face]),
+          on_b,      separation};
+}
+
 float clip_faces(const FacePair& pair, const Vec<3>& a_to_b, float margin, Manifold<3>& manifold) {
   const Solid& reference = pair.reference;
   const Vec<3> normal = reference.normals[pair.reference_face];

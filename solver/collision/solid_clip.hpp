@@ -47,6 +47,10 @@ struct EdgePair {
 /// The face whose normal is most opposed to `normal`; of those within 1e-3 the lowest.
 std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal);
 
+/// The face of a, or of b, with the face of the other that is most opposed to it.
+FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_b,
+                    float separation);
+
 /// The points nearest to each other on the segments from p0 to p1 and from q0 to q1, of positive
 /// length; of parallel ones some such pair. Source: Ericson (2005), 5.1.9.
 struct NearestPoints {
