@@ -64,13 +64,16 @@ inline std::set<std::vector<std::uint32_t>> faces_of(const std::vector<Vec<3>>& 
           if (std::abs(height) <= 1.0e-5f) on.push_back(m);
         }
         if (outside) continue;
-        const Vec<3> first = points[on[1]] - points[on[0]];
+        Vec<3> middle = Vec<3>::zero();
+        for (const std::uint32_t m : on)
+          middle += (1.0f / static_cast<float>(on.size())) * points[m];
+        const Vec<3> first = points[on[0]] - middle;
         const auto angle = [&](std::uint32_t m) {
-          const Vec<3> middle = 0.5f * (points[on[0]] + points[on[1]]);
           const Vec<3> arm = points[m] - middle;
-          return std::atan2(dot(cross(normal, first), arm), dot(first, arm));
+          const float turn = std::atan2(dot(cross(normal, first), arm), dot(first, arm));
+          return turn < 0.0f ? turn + 6.2831853f : turn;
         };
-        std::sort(on.begin(), on.end(),
+        std::sort(on.begin() + 1, on.end(),
                   [&](std::uint32_t p, std::uint32_t q) { return angle(p) < angle(q); });
         std::rotate(on.begin(), std::min_element(on.begin(), on.end()), on.end());
         faces.insert(on);
