@@ -10,8 +10,7 @@ static constexpr std::uint32_t kCut = 0x200u;
 struct ClipVertex {
   Vec<3> at;
   std::uint32_t feature;  ///< Lower 20 bits of a clip_feature.
-  std::uint32_t
-      edge;  ///< What leads to the next vertex: an incident edge, or kCut and a clip edge.
+  std::uint32_t edge;     ///< To the next vertex: an incident edge, or kCut and a clip edge.
 };
 
 struct Polygon {

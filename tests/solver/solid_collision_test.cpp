@@ -226,8 +226,9 @@ TEST(SolidCollision, BoxesApartNeitherExceedTheirDistanceNorMissIt) {
       ASSERT_GT(manifold.point_count, 0u) << i;
       EXPECT_LE(static_cast<double>(separations(manifold).front()), distance.most + 2.1e-3) << i;
     }
-    if (distance.least > static_cast<double>(margin) + 1e-4)
+    if (distance.least > static_cast<double>(margin) + 1e-4) {
       EXPECT_EQ(manifold.point_count, 0u) << i;
+    }
   }
   EXPECT_GT(near, 200);
 }

@@ -222,7 +222,9 @@ TEST(SolidCollision, RandomHullsAgreeWithEveryAxisTried) {
     const Solid b = placed(other.shape, pose_b, other.pool);
     const Manifold<3> manifold = solid_against_solid(a, b, pose_b.position, 0.02f);
     const double best = best_gap(a, b);
-    if (best > 0.02 + 1e-5) EXPECT_EQ(manifold.point_count, 0u) << i;
+    if (best > 0.02 + 1e-5) {
+      EXPECT_EQ(manifold.point_count, 0u) << i;
+    }
     if (best > 0.0) continue;
     ++overlapping;
     expect_finite(manifold);
