@@ -1,4 +1,4 @@
-#include "tests/solver/solid_fixture.hpp"
+#include "tests/solver/space_fixture.hpp"
 
 namespace cycloid::solver {
 
