@@ -35,7 +35,7 @@ SegmentPair nearest_points(const Vec<3>& a_from, const Vec<3>& a_to, const Vec<3
 /// The unit normal from a to b at their nearest points: the line between these; where the segments
 /// cross the normal of both, so that it does not depend on a small distance; where they touch one
 /// across the segment that is met inside, towards the other's middle, and where that has no
-/// direction either, upwards (axis 1) as far as the segment allows.
+/// direction either, upwards (axis 1) as far as the segments allow.
 Vec<3> normal_between(const Rod& a, const Rod& b, const SegmentPair& pair);
 
 /// One point of each axis, and how far apart they are along a manifold's normal, m.

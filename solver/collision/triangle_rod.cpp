@@ -61,7 +61,7 @@ Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Ve
   // A rod across an edge where the surface goes on flat is over both triangles; so is, by a
   // rounding, one that lies on the triangle and sticks out over its edge.
   const bool along_own =
-      low <= nearest.pair.distance + 2.0e-4f * rod.radius || leaning == Leaning::kOwnOnly;
+      low <= nearest.pair.distance + 1.0e-4f * rod.radius || leaning == Leaning::kOwnOnly;
   if (over && along_own) {
     add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
     return manifold;
