@@ -14,6 +14,9 @@ inline Vec<3> point_on(const Rod& rod, float fraction) {
   return rod.from + fraction * (rod.to - rod.from);
 }
 
+/// What is within this cosine of lying flat on a face is met along the face's normal.
+inline constexpr float kLiesFlat = 0.9998f;
+
 /// The nearest points of two segments.
 struct SegmentPair {
   Vec<3> on_a;

@@ -132,25 +132,24 @@ static float lowest(const Solid& solid, std::uint32_t face, const Rod& rod, cons
 static Manifold<3> outside(const Solid& solid, const Rod& rod, const Nearest& nearest,
                            const Vec<3>& a_to_b, float margin) {
   Manifold<3> manifold;
-  std::uint32_t face = nearest.face;
-  if (face == kNone) {
-    manifold.normal = normal_between(edge_rod(solid, nearest.edge), rod, nearest.pair);
-    face = face_along(solid, nearest, manifold.normal);
-  }
-  // A rod that lies on a face and sticks out over its edge is nearest to the edge, by a rounding.
   const float slack = rounding_of(solid, rod);
+  if (nearest.face != kNone) {
+    manifold.normal = solid.normals[nearest.face];
+    const Span span = clip_to_face(solid, nearest.face, rod, slack);
+    add_span(solid, nearest.face, rod, span, a_to_b, margin, manifold);
+    return manifold;
+  }
+  const Vec<3> normal = normal_between(edge_rod(solid, nearest.edge), rod, nearest.pair);
+  const std::uint32_t face = face_along(solid, nearest, normal);
   const Span span = clip_to_face(solid, face, rod, slack);
-  if (span.from <= span.to &&
+  // A rod that lies on a face and sticks out over its edge is nearest to the edge, by a rounding.
+  if (span.from <= span.to && dot(normal, solid.normals[face]) > kLiesFlat &&
       lowest(solid, face, rod, span) <= nearest.distance + 1.0e-4f * rod.radius + slack) {
     manifold.normal = solid.normals[face];
     add_span(solid, face, rod, span, a_to_b, margin, manifold);
     if (manifold.point_count > 0) return manifold;
   }
-  if (nearest.face != kNone) {
-    add_span(solid, face, rod, {0.0f, 1.0f}, a_to_b, margin, manifold);
-    return manifold;
-  }
-  manifold.normal = normal_between(edge_rod(solid, nearest.edge), rod, nearest.pair);
+  manifold.normal = normal;
   add_edge_points(solid, nearest.edge, rod, nearest.pair, a_to_b, margin, manifold);
   return manifold;
 }

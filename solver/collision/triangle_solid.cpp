@@ -15,9 +15,6 @@ struct Contacting {
   float refused = -3.0e38f;  ///< Separation along the best axis that is a neighbour's, m.
 };
 
-/// A solid within this cosine of lying flat on the triangle is met along the triangle's normal.
-static constexpr float kLiesFlat = 0.9998f;
-
 /// How much farther apart than the best so far an axis has to be to take its place, m, so that
 /// what rests does not change its axis from tick to tick.
 static float preference(const Solid& solid) {

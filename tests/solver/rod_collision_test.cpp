@@ -350,7 +350,7 @@ TEST(RodCollision, CapsuleBoxPairsMatchTheDistanceInDoublePrecision) {
     const double low =
         std::min(dot(exact(m.normal), exact(rod.from)), dot(exact(m.normal), exact(rod.to)));
     if (expected + rod.radius > 1e-2 || expected + rod.radius < -1e-4) {
-      ASSERT_NEAR(low - top - rod.radius, expected, 0.01) << i;
+      ASSERT_NEAR(low - top - rod.radius, expected, 0.05) << i;
     }
     if (m.point_count == 2) {
       ASSERT_NE(m.points[0].feature, m.points[1].feature);
