@@ -67,15 +67,13 @@ SignedDistance<3> distance_to_triangle(const Shape<3>& shape, const Vec<3>& poin
   return {dot(shape.normal, point - shape.vertices[0]), shape.normal};
 }
 
-/// The face whose plane the point is highest over; of equals the first.
-static std::uint32_t highest_face(const PolyhedronView& hull, const Vec<3>& point, float& highest) {
+/// The heights over the planes of all faces, and the highest; of equals the first.
+static std::uint32_t highest_face(const PolyhedronView& hull, const Vec<3>& point,
+                                  std::array<float, kHullFacesMax>& heights) {
   std::uint32_t best = 0;
-  highest = dot(hull.faces[0].normal, point) - hull.faces[0].offset;
-  for (std::uint32_t f = 1; f < hull.faces.size(); ++f) {
-    const float height = dot(hull.faces[f].normal, point) - hull.faces[f].offset;
-    if (height <= highest) continue;
-    highest = height;
-    best = f;
+  for (std::uint32_t f = 0; f < hull.faces.size(); ++f) {
+    heights[f] = dot(hull.faces[f].normal, point) - hull.faces[f].offset;
+    if (heights[f] > heights[best]) best = f;
   }
   return best;
 }
@@ -100,17 +98,13 @@ static bool above_face(const PolyhedronView& hull, std::uint32_t face, const Vec
 /// is, so that face is the nearest if the point is right above it; otherwise an edge is, of a face
 /// that the point is in front of.
 static SignedDistance<3> local_distance(const PolyhedronView& hull, const Vec<3>& point) {
-  float highest = 0.0f;
-  const std::uint32_t face = highest_face(hull, point, highest);
+  std::array<float, kHullFacesMax> heights;
+  const std::uint32_t face = highest_face(hull, point, heights);
   const Vec<3>& normal = hull.faces[face].normal;
-  if (highest <= 0.0f || above_face(hull, face, point)) return {highest, normal};
+  if (heights[face] <= 0.0f || above_face(hull, face, point)) return {heights[face], normal};
   SignedDistance<3> nearest{3.0e38f, normal};
   for (std::uint32_t e = 0; e < hull.edges.size(); e += 2) {
-    const PolyhedronFace& left = hull.faces[hull.edges[e].face];
-    const PolyhedronFace& right = hull.faces[hull.edges[e + 1].face];
-    const bool seen =
-        dot(left.normal, point) > left.offset || dot(right.normal, point) > right.offset;
-    if (!seen) continue;
+    if (!(max(heights[hull.edges[e].face], heights[hull.edges[e + 1].face]) > 0.0f)) continue;
     const SignedDistance<3> edge =
         to_line(corner_of(hull, e), corner_of(hull, e + 1), point, normal);
     if (edge.distance < nearest.distance) nearest = edge;

@@ -10,7 +10,7 @@ static Separation<2> start_of(const Core<2>& core, const Core<2>& point) {
 }
 static Separation<3> start_of(const Core<3>& core, const Core<3>& point) {
   if (core.face_count == 0 || core.radius > 0.0f) return separation_of(core, point);
-  return core.one_sided() ? Separation<3>{} : separation_across(core, point);
+  return encloses(core, point.vertices[0]) ? separation_across(core, point) : Separation<3>{};
 }
 
 /// A ray is the cast of a point; only what it starts in is treated otherwise.

@@ -43,6 +43,7 @@ struct Core<3> {
   std::uint32_t edge_count = 0;  ///< Half-edges.
   const PolyhedronFace* faces = nullptr;
   const PolyhedronEdge* edges = nullptr;
+  Vec<3> centre;                                  ///< Hull: the origin of its own frame.
   Rotation<3> rotation;                           ///< Hull: of its faces.
   std::array<Vec<3>, 6> normals;                  ///< Box and triangle: of the faces; [0] is free.
   std::array<Vec<3>, kHullVerticesMax> vertices;  ///< Triangle: then the ghosts.

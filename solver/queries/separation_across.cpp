@@ -73,9 +73,10 @@ static void offer_edges(const Edge& a, const Edge& b, const Vec<3>& perpendicula
 static bool arcs_cross(const Edge& a, const Edge& b) {
   const float left_b = -dot(b.left, a.span);
   const float right_b = -dot(b.right, a.span);
+  if (left_b * right_b >= 0.0f) return false;
   const float left_a = dot(a.left, b.span);
   const float right_a = dot(a.right, b.span);
-  return left_b * right_b < 0.0f && left_a * right_a < 0.0f && left_b * right_a > 0.0f;
+  return left_a * right_a < 0.0f && left_b * right_a > 0.0f;
 }
 
 static void offer_edge_pairs(const Core<3>& a, const Core<3>& b, Axis& best) {

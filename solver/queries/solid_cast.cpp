@@ -96,16 +96,48 @@ static Entry<3> enter_triangle(const Core<3>& core, const Vec<3>& from, const Ve
   return entry;
 }
 
+/// A point and a direction in the frame of a core's faces. That of a hull is its own, so that its
+/// normals need not be turned.
+struct FaceRay {
+  Vec<3> from;
+  Vec<3> way;
+};
+
+static FaceRay face_ray(const Core<3>& core, const Vec<3>& from, const Vec<3>& way) {
+  if (core.kind != ShapeKind::kHull) return {from, way};
+  return {rotate_back(core.rotation, from - core.centre), rotate_back(core.rotation, way)};
+}
+
+static const Vec<3>& own_normal(const Core<3>& core, std::uint32_t face) {
+  return core.kind == ShapeKind::kHull ? core.faces[face].normal : core.normals[face];
+}
+
+/// Of the ray's start over the plane of a face.
+static float height_of(const Core<3>& core, std::uint32_t face, const FaceRay& ray) {
+  if (core.kind == ShapeKind::kHull)
+    return dot(core.faces[face].normal, ray.from) - core.faces[face].offset;
+  return dot(core.normals[face], ray.from - core.face_corner(face));
+}
+
+bool encloses(const Core<3>& core, const Vec<3>& point) {
+  if (core.one_sided() || core.face_count == 0) return false;
+  const FaceRay ray = face_ray(core, point, Vec<3>::zero());
+  for (std::uint32_t f = 0; f < core.face_count; ++f)
+    if (height_of(core, f, ray) >= 0.0f) return false;
+  return true;
+}
+
 /// A ray, clipped by the planes of all faces.
 static Entry<3> enter_faces(const Core<3>& core, const Vec<3>& from, const Vec<3>& translation,
                             float way) {
   Entry<3> entry{};
+  const FaceRay ray = face_ray(core, from, translation);
   float enters = -3.0e38f;
   float leaves = 3.0e38f;
+  std::uint32_t face = 0;
   for (std::uint32_t f = 0; f < core.face_count; ++f) {
-    const Vec<3> normal = core.face_normal(f);
-    const float height = dot(normal, from - core.face_corner(f));
-    const float approach = -dot(normal, translation);
+    const float height = height_of(core, f, ray);
+    const float approach = -dot(own_normal(core, f), ray.way);
     if (abs(approach) <= 1.0e-12f * way) {
       if (height >= 0.0f) return entry;
       continue;
@@ -115,14 +147,31 @@ static Entry<3> enter_faces(const Core<3>& core, const Vec<3>& from, const Vec<3
       leaves = min(leaves, fraction);
     } else if (fraction > enters) {
       enters = fraction;
-      entry.normal = normal;
+      face = f;
     }
+    if (enters >= leaves) return entry;
   }
-  if (enters >= leaves || enters > 1.0f || enters * way < -kTouch) return entry;
+  if (enters > 1.0f || enters * way < -kTouch) return entry;
   entry.hit = true;
   entry.fraction = max(enters, 0.0f);
+  entry.normal = core.face_normal(face);
   entry.point = from + entry.fraction * translation;
   return entry;
+}
+
+/// The separation of cores on a way. After a step cores that touch do so in the plane that the step
+/// led to, so `normal` stays.
+static Separation<3> separation_on_way(const Core<3>& core, const Core<3>& moved, bool stepped,
+                                       const Vec<3>& normal) {
+  if (!stepped) return separation_of_cores(core, moved);
+  const NearestPoints nearest = nearest_points(core, moved);
+  if (nearest.enclosed) return separation_across(core, moved);
+  Separation<3> result{};
+  result.normal = nearest.touching ? normal : nearest.normal;
+  result.distance = nearest.touching ? 0.0f : nearest.distance;
+  result.distance -= core.radius + moved.radius;
+  result.point_a = nearest.on_a + core.radius * result.normal;
+  return result;
 }
 
 /// Newton's method on the distance along the way, which is convex: it comes from the outside and
@@ -134,7 +183,7 @@ static Entry<3> advance(const Core<3>& core, const Core<3>& probe, const Vec<3>&
   for (int step = 0; step < kSteps; ++step) {
     const Vec<3> shift = entry.fraction * translation;
     for (std::uint32_t i = 0; i < probe.count; ++i) moved.vertices[i] = probe.vertices[i] + shift;
-    const Separation<3> between = separation_of_cores(core, moved);
+    const Separation<3> between = separation_on_way(core, moved, step > 0, entry.normal);
     const float approach = -dot(between.normal, translation);
     entry.normal = between.normal;
     entry.point = between.point_a;

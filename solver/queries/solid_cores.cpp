@@ -17,9 +17,9 @@ static void place_hull(const Shape<3>& shape, const Rotation<3>& rotation, const
   set_topology(view, core);
   core.count = static_cast<std::uint32_t>(view.vertices.size());
   core.rotation = compose(rotation, shape.rotation);
-  const Vec<3> centre = position + rotate(rotation, shape.vertices[0]);
+  core.centre = position + rotate(rotation, shape.vertices[0]);
   for (std::size_t i = 0; i < view.vertices.size(); ++i)
-    core.vertices[i] = centre + rotate(core.rotation, view.vertices[i].position);
+    core.vertices[i] = core.centre + rotate(core.rotation, view.vertices[i].position);
 }
 
 static void place_flat(const Shape<3>& shape, const Rotation<3>& rotation, const Vec<3>& position,

@@ -37,6 +37,9 @@ Separation<3> separation_of_cores(const Core<3>& a, const Core<3>& b);
 /// otherwise by advancing along the separating plane, which cannot lead past the contact.
 Entry<3> enter_core(const Core<3>& core, const Core<3>& probe, const Vec<3>& translation);
 
+/// Whether the point is inside of the faces of a core; false for a triangle.
+bool encloses(const Core<3>& core, const Vec<3>& point);
+
 /// The corners of a box, a hull or a triangle, with its faces.
 void place_vertices(const Shape<3>& shape, const Rotation<3>& rotation, const Vec<3>& position,
                     const Polyhedra& polyhedra, Core<3>& core);

@@ -234,6 +234,32 @@ TEST(SolidSeparation, FindsABoxAmongTheCornersOfAProbe) {
   }
 }
 
+TEST(SolidSeparation, OfProbesWithoutFacesIsExactApartAndFiniteInside) {
+  std::mt19937 random(9);
+  for (int i = 0; i < 2000; ++i) {
+    Polyhedra pools;
+    const std::vector<Vec<3>> corners = random_corners(random, 12, {{0.5f, 0.4f, 0.3f}});
+    Probe<3> probe;
+    probe.count = 12;
+    for (std::size_t k = 0; k < 12; ++k) probe.points[k] = corners[k];
+    const Rotation<3> turn = random_rotation(random);
+    const Core<3> bare = core_of(probe, turn);
+    const Core<3> hull = core_at(solid_hull(corners, pools), {{0, 0, 0}}, turn, pools);
+    const Vec<3> at = random_vector(random, 1.2f);
+    for (const Shape<3>& shape : {solid_box({{0.4f, 0.6f, 0.5f}}), solid_ball(0.1f)}) {
+      const Separation<3> found = separation_of(bare, core_at(shape, at));
+      const Separation<3> wanted = separation_of(hull, core_at(shape, at));
+      EXPECT_EQ(found.crossing, wanted.crossing);
+      ASSERT_NEAR(length(found.normal), 1, 1e-5f);
+      if (wanted.crossing) {
+        EXPECT_LE(found.distance, wanted.distance + 1e-6f);
+      } else {
+        EXPECT_NEAR(found.distance, wanted.distance, 2e-6f);
+      }
+    }
+  }
+}
+
 /// Two triangles that share the edge along z at the origin; the second is turned by `angle`.
 static Core<3> hinged(float angle) {
   Shape<3> shape = solid_triangle({{-1, 0, 0}}, {{0, 0, 1}}, {{0, 0, -1}});
