@@ -197,4 +197,32 @@ TEST(SolidImpact, StopsFastRodsAndBoxesAtAHalfSpace) {
   }
 }
 
+/// The tick of the impact alone: what follows it is the contact solver's.
+TEST(SolidImpact, EndsTheTickOfAFastBodyBeforeAThinWall) {
+  for (const bool rod : {false, true}) {
+    World<3> world = make_world<3>();
+    BodyDef<3> def;
+    def.kind = BodyKind::kStatic;
+    def.position = {{40, 0, 0}};
+    def.rotation = turned_about({{0, 0, 1}}, 0.2f);
+    ShapeDef<3> wall;
+    wall.kind = ShapeKind::kBox;
+    wall.half = {{0.01f, 5, 5}};
+    add(world, def, wall);
+    BodyDef<3> shot;
+    shot.velocity = {{5000, 0, 0}};
+    ShapeDef<3> shape = ball<3>(0.05f);
+    if (rod) {
+      shape.kind = ShapeKind::kCapsule;
+      shape.points = {{{0, -0.5f, 0}}, {{0, 0.5f, 0}}};
+      shot.spin = {{0, 0, 50}};
+    }
+    const BodyId id = add(world, shot, shape);
+    step(world, 1);
+    const BodyView<3> stopped = view(world, id);
+    EXPECT_LT(stopped.position[0], 40 - 0.06f);
+    EXPECT_GT(stopped.position[0], 40 - 0.75f);
+  }
+}
+
 }  // namespace cycloid::solver
