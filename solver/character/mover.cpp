@@ -25,14 +25,11 @@ struct Passage {
 template <int D>
 static Probe<D> probe_of(const MoverDef<D>& def, float radius) {
   Probe<D> probe{};
-  probe.count = 1;
   probe.radius = radius;
   probe.points[0] = def.lower;
-  if constexpr (Dim<D>::kVertices > 1) {
-    const Vec<D> axis = def.upper - def.lower;
-    probe.points[1] = def.upper;
-    probe.count = dot(axis, axis) > 0.0f ? 2 : 1;
-  }
+  probe.points[1] = def.upper;
+  const Vec<D> axis = def.upper - def.lower;
+  probe.count = dot(axis, axis) > 0.0f ? 2 : 1;
   return probe;
 }
 

@@ -20,7 +20,7 @@ constexpr Vec<D> axis_up() {
 template <int D>
 struct MoverDef {
   Vec<D> lower = Vec<D>::zero();      ///< End of the capsule's segment, from the position, m.
-  Vec<D> upper = Vec<D>::zero();      ///< The other; equal to `lower` for a ball. 3D: balls only.
+  Vec<D> upper = Vec<D>::zero();      ///< The other; equal to `lower` for a ball.
   float radius = 0.3f;                ///< m, > 0.
   float skin = 0.01f;                 ///< m of distance kept from everything, > 0.
   Vec<D> up = axis_up<D>();           ///< Unit.

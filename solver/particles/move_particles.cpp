@@ -49,15 +49,17 @@ static Pose<D> relative_pose(const Flight<D>& flight, const Shape<D>& shape) {
 /// From the surface of the particle, centred at `at`, to the surface of the shape.
 template <int D>
 static SignedDistance<D> gap(const Flight<D>& flight, const Shape<D>& shape, const Vec<D>& at) {
-  SignedDistance<D> result = signed_distance(shape, relative_pose(flight, shape), at);
+  SignedDistance<D> result =
+      signed_distance(shape, relative_pose(flight, shape), at, flight.state.polyhedra);
   result.distance -= flight.particle.radius;
   return result;
 }
 
-/// Whether the particle's centre is behind a segment, which then lets it through.
+/// Whether the particle's centre is behind a segment or triangle, which then lets it through.
 template <int D>
 static bool is_behind(const Flight<D>& flight, const Shape<D>& shape, float gap_distance) {
-  return shape.kind == ShapeKind::kSegment && gap_distance < -shape.radius - flight.particle.radius;
+  const bool one_sided = shape.kind == ShapeKind::kSegment || shape.kind == ShapeKind::kTriangle;
+  return one_sided && gap_distance < -shape.radius - flight.particle.radius;
 }
 
 /// Shapes that meet the particle on its way from `at` along the rest, by slot.

@@ -1,5 +1,7 @@
 #include "solver/particles/shape_distance.hpp"
 
+#include "solver/particles/solid_distance.hpp"
+
 namespace cycloid::solver {
 
 template <int D>
@@ -53,7 +55,8 @@ static SignedDistance<2> distance_to_core(const Shape<2>& shape, const Vec<2>& p
   return distance_to_edge(shape.vertices[edge], shape.vertices[next], normal, point);
 }
 
-static SignedDistance<2> local_distance(const Shape<2>& shape, const Vec<2>& point) {
+static SignedDistance<2> local_distance(const Shape<2>& shape, const Vec<2>& point,
+                                        const Polyhedra&) {
   SignedDistance<2> result;
   if (shape.kind == ShapeKind::kSegment)
     result = distance_to_edge(shape.vertices[0], shape.vertices[1], shape.normals[0], point);
@@ -67,27 +70,45 @@ static SignedDistance<2> local_distance(const Shape<2>& shape, const Vec<2>& poi
   return result;
 }
 
-/// In space a shape is a ball or a half-space.
-static SignedDistance<3> local_distance(const Shape<3>& shape, const Vec<3>& point) {
-  SignedDistance<3> result = distance_to_point(shape.vertices[0], point, {{1.0f, 0.0f, 0.0f}});
+static SignedDistance<3> core_distance(const Shape<3>& shape, const Vec<3>& point,
+                                       const Polyhedra& polyhedra) {
+  switch (shape.kind) {
+    case ShapeKind::kCapsule:
+      return distance_to_capsule(shape, point);
+    case ShapeKind::kBox:
+      return distance_to_box(shape, point);
+    case ShapeKind::kHull:
+      return distance_to_hull(shape, point, polyhedra);
+    case ShapeKind::kTriangle:
+      return distance_to_triangle(shape, point);
+    default:
+      return distance_to_point(shape.vertices[0], point, {{1.0f, 0.0f, 0.0f}});
+  }
+}
+static SignedDistance<3> local_distance(const Shape<3>& shape, const Vec<3>& point,
+                                        const Polyhedra& polyhedra) {
+  SignedDistance<3> result = core_distance(shape, point, polyhedra);
   result.distance -= shape.radius;
   return result;
 }
 
 template <int D>
-SignedDistance<D> signed_distance(const Shape<D>& shape, const Pose<D>& pose, const Vec<D>& point) {
+SignedDistance<D> signed_distance(const Shape<D>& shape, const Pose<D>& pose, const Vec<D>& point,
+                                  const Polyhedra& polyhedra) {
   if (shape.kind == ShapeKind::kHalfSpace) {
     // The body may be far away; the point adds its own digits last.
     const Vec<D> normal = rotate(pose.rotation, shape.normal);
     return {dot(normal, point) - (shape.offset + dot(normal, pose.position)), normal};
   }
   SignedDistance<D> result =
-      local_distance(shape, rotate_back(pose.rotation, point - pose.position));
+      local_distance(shape, rotate_back(pose.rotation, point - pose.position), polyhedra);
   result.normal = rotate(pose.rotation, result.normal);
   return result;
 }
 
-template SignedDistance<2> signed_distance(const Shape<2>&, const Pose<2>&, const Vec<2>&);
-template SignedDistance<3> signed_distance(const Shape<3>&, const Pose<3>&, const Vec<3>&);
+template SignedDistance<2> signed_distance(const Shape<2>&, const Pose<2>&, const Vec<2>&,
+                                           const Polyhedra&);
+template SignedDistance<3> signed_distance(const Shape<3>&, const Pose<3>&, const Vec<3>&,
+                                           const Polyhedra&);
 
 }  // namespace cycloid::solver

@@ -11,7 +11,7 @@ static void fill_normals(Shape<2>& shape) {
     shape.normals[i] = normalized_or(Vec<2>{{edge[1], -edge[0]}}, Vec<2>{{0.0f, 1.0f}});
   }
 }
-/// Space has only points as yet.
+/// The roundings of points and lines in space have no normals to keep.
 static void fill_normals(Shape<3>&) {}
 
 template <int D>
@@ -32,7 +32,7 @@ template <int D>
 std::vector<QueryHit<D>> overlap(const WorldState<D>& state, const Probe<D>& probe,
                                  const Pose<D>& pose, float margin, const QueryFilter& filter) {
   std::vector<QueryHit<D>> hits;
-  const Core<D> core = core_of(shape_of(probe), pose.rotation, Vec<D>::zero(), state.polyhedra);
+  const Core<D> core = core_of(probe, pose.rotation);
   Core<D> reach = core;
   reach.radius += max(margin, 0.0f);
   const auto test = [&](const Shape<D>& shape, const Pose<D>& relative) {

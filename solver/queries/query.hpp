@@ -29,7 +29,8 @@ struct QueryHit {
 };
 
 /// A convex probe: a hull of 1 to Dim<D>::kVertices points rounded by `radius` [m]: a ball is one
-/// point, a capsule two, a polygon 3 to 8 in counter-clockwise order and convex.
+/// point, a capsule two, a polygon 3 to 8 in counter-clockwise order and convex. In space a hull
+/// has 4 to 64 corners in any order; a box has 8.
 template <int D>
 struct Probe {
   std::uint32_t count = 1;
@@ -39,7 +40,7 @@ struct Probe {
 
 /// The probe as a shape: kind by its number of points, edge normals filled, default filter. It
 /// belongs to no body; its pose takes the place of a body's centre of mass.
-/// @pre as in Probe; neighbouring points differ.
+/// @pre as in Probe; neighbouring points differ; in space a ball or a capsule.
 template <int D>
 Shape<D> shape_of(const Probe<D>& probe);
 
@@ -73,6 +74,10 @@ std::vector<QueryHit<D>> overlap(const WorldState<D>& state, const Probe<D>& pro
 /// turning, in the order of shape slots, at the fraction of first contact. A shape that the probe
 /// overlaps at the start is met at fraction 0, with that separation, if the way leads deeper in
 /// (dot(normal, translation) < 0), and otherwise not at all. Exact up to rounding: no iteration.
+///
+/// In space that holds for rays and for balls against balls and capsules. Other casts advance by
+/// their distance, at most 48 times: they stop at most 1e-5 m + 2e-6 of the shapes' size before the
+/// contact (grazing ways earlier), not after it, and never miss one that goes deeper than that.
 ///
 /// The first contact is where the ray along `translation` enters the rounded Minkowski difference
 /// of the two. Source: van den Bergen, "Ray Casting against General Convex Objects" (2004).

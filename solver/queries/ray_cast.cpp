@@ -1,7 +1,17 @@
 #include "solver/queries/candidates.hpp"
 #include "solver/queries/casting.hpp"
+#include "solver/queries/solid_queries.hpp"
 
 namespace cycloid::solver {
+
+/// Where a ray starts. In space a solid needs no nearest point, only whether the point is inside.
+static Separation<2> start_of(const Core<2>& core, const Core<2>& point) {
+  return separation_of(core, point);
+}
+static Separation<3> start_of(const Core<3>& core, const Core<3>& point) {
+  if (core.face_count == 0 || core.radius > 0.0f) return separation_of(core, point);
+  return encloses(core, point.vertices[0]) ? separation_across(core, point) : Separation<3>{};
+}
 
 /// A ray is the cast of a point; only what it starts in is treated otherwise.
 template <int D>
@@ -15,7 +25,7 @@ std::vector<QueryHit<D>> ray_cast(const WorldState<D>& state, const Vec<D>& from
   const Vec<D> translation = to - from;
   const auto cast = [&](const Shape<D>& shape, const Pose<D>& relative) {
     const Core<D> core = core_of(shape, relative.rotation, relative.position, state.polyhedra);
-    const Separation<D> start = separation_of(core, point);
+    const Separation<D> start = start_of(core, point);
     if (start.distance < 0.0f && allows(core, start.normal)) {
       const Vec<D> normal = normalized_or(-translation, start.normal);
       hits.push_back(hit_of(state, shape, from, Vec<D>::zero(), normal));

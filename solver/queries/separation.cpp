@@ -1,6 +1,6 @@
 #include "solver/queries/separation.hpp"
 
-#include "solver/collision/solid.hpp"
+#include "solver/queries/solid_queries.hpp"
 
 namespace cycloid::solver {
 
@@ -12,17 +12,6 @@ static void place_vertices(const Shape<2>& shape, const Rotation<2>& rotation,
     core.vertices[i] = position + rotate(rotation, shape.vertices[i]);
     core.normals[i] = rotate(rotation, shape.normals[i]);
   }
-}
-static void place_vertices(const Shape<3>& shape, const Rotation<3>& rotation,
-                           const Vec<3>& position, const Polyhedra& polyhedra, Core<3>& core) {
-  core.count = shape.vertex_count;
-  for (std::uint32_t i = 0; i < core.count; ++i)
-    core.vertices[i] = position + rotate(rotation, shape.vertices[i]);
-  if (shape.kind == ShapeKind::kBall || shape.kind == ShapeKind::kCapsule) return;
-  Solid solid;
-  place(shape, polyhedra, rotation, position, solid);
-  core.count = solid.vertex_count;
-  for (std::uint32_t i = 0; i < core.count; ++i) core.vertices[i] = solid.vertices[i];
 }
 
 template <int D>
@@ -39,6 +28,10 @@ Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>
   }
   place_vertices(shape, rotation, position, polyhedra, core);
   return core;
+}
+
+Core<2> core_of(const Probe<2>& probe, const Rotation<2>& rotation) {
+  return core_of(shape_of(probe), rotation, Vec<2>::zero(), {});
 }
 
 /// The edge normal along which two cores are farthest apart.
@@ -120,10 +113,6 @@ static bool cores_cross(const Core<2>& a, const Core<2>& b, float separation) {
   // A point beside a line, or two lines: rounding may put every height below 0 far from any touch.
   return a.count == 2 && b.count == 2 && lines_cross(a, b);
 }
-/// Space has only points as yet.
-static bool cores_cross(const Core<3>&, const Core<3>&, float) {
-  return false;
-}
 
 /// The largest separation over all edge normals of both, without the rule for one-sided shapes.
 template <int D>
@@ -180,6 +169,26 @@ static Separation<D> from_half_space(const Core<D>& plane, const Core<D>& core) 
   return result;
 }
 
+static Separation<2> separation_of_cores(const Core<2>& a, const Core<2>& b) {
+  if (cores_cross(a, b, axis_separation(a, b))) {
+    Separation<2> result = across(a, b);
+    result.crossing = true;
+    return result;
+  }
+  CorePair<2> pair;
+  nearest_pair(a, b, false, pair);
+  nearest_pair(b, a, true, pair);
+  const float distance = sqrt(pair.square);
+  // Cores that all but touch have no direction between them.
+  if (distance < 1.0e-6f) return across(a, b);
+  Separation<2> result{};
+  result.normal = (1.0f / distance) * (pair.on_b - pair.on_a);
+  result.distance = distance - (a.radius + b.radius);
+  result.point_a = pair.on_a + a.radius * result.normal;
+  result.point_b = pair.on_b - b.radius * result.normal;
+  return result;
+}
+
 template <int D>
 Separation<D> separation_of(const Core<D>& a, const Core<D>& b) {
   if (a.half_space()) return from_half_space(a, b);
@@ -191,23 +200,7 @@ Separation<D> separation_of(const Core<D>& a, const Core<D>& b) {
     result.point_b = on_plane;
     return result;
   }
-  if (cores_cross(a, b, axis_separation(a, b))) {
-    Separation<D> result = across(a, b);
-    result.crossing = true;
-    return result;
-  }
-  CorePair<D> pair;
-  nearest_pair(a, b, false, pair);
-  nearest_pair(b, a, true, pair);
-  const float distance = sqrt(pair.square);
-  // Cores that all but touch have no direction between them.
-  if (distance < 1.0e-6f) return across(a, b);
-  Separation<D> result{};
-  result.normal = (1.0f / distance) * (pair.on_b - pair.on_a);
-  result.distance = distance - (a.radius + b.radius);
-  result.point_a = pair.on_a + a.radius * result.normal;
-  result.point_b = pair.on_b - b.radius * result.normal;
-  return result;
+  return separation_of_cores(a, b);
 }
 
 bool allows(const Core<2>& core, const Vec<2>& normal) {
@@ -227,9 +220,6 @@ bool allows(const Core<2>& core, const Vec<2>& normal) {
   const float corner = towards_end ? cross(own, neighbour) : cross(neighbour, own);
   const float left = towards_end ? cross(normal, neighbour) : cross(neighbour, normal);
   return corner > 0.0f && left >= -kSlack;
-}
-bool allows(const Core<3>&, const Vec<3>&) {
-  return true;
 }
 
 template Core<2> core_of(const Shape<2>&, const Rotation<2>&, const Vec<2>&, const Polyhedra&);

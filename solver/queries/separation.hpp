@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/queries/query.hpp"
 #include "solver/state.hpp"
 
 namespace cycloid::solver {
@@ -7,7 +8,11 @@ namespace cycloid::solver {
 /// A shape in the frame of a query (world axes, a nearby origin): a convex core that `radius`
 /// rounds, or a half-space.
 template <int D>
-struct Core {
+struct Core;
+
+template <>
+struct Core<2> {
+  static constexpr int D = 2;
   ShapeKind kind = ShapeKind::kFree;
   std::uint32_t count = 0;  ///< 0 for a half-space.
   std::uint32_t ghosts = 0;
@@ -24,9 +29,46 @@ struct Core {
   std::uint32_t next(std::uint32_t i) const { return i + 1 < count ? i + 1 : 0; }
 };
 
+/// Faces and half-edges are those of the polyhedron; without faces the core is a point, a line or
+/// the hull of its vertices.
+template <>
+struct Core<3> {
+  ShapeKind kind = ShapeKind::kFree;
+  std::uint32_t count = 0;  ///< 0 for a half-space.
+  std::uint32_t ghosts = 0;
+  float radius = 0.0f;
+  float offset = 0.0f;  ///< Half-space: solid where dot(normal, x) <= offset.
+  Vec<3> normal;        ///< Half-space.
+  std::uint32_t face_count = 0;
+  std::uint32_t edge_count = 0;  ///< Half-edges.
+  const PolyhedronFace* faces = nullptr;
+  const PolyhedronEdge* edges = nullptr;
+  Vec<3> centre;                                  ///< Hull: the origin of its own frame.
+  Rotation<3> rotation;                           ///< Hull: of its faces.
+  std::array<Vec<3>, 6> normals;                  ///< Box and triangle: of the faces; [0] is free.
+  std::array<Vec<3>, kHullVerticesMax> vertices;  ///< Triangle: then the ghosts.
+
+  bool half_space() const { return kind == ShapeKind::kHalfSpace; }
+  bool one_sided() const { return kind == ShapeKind::kTriangle; }
+  /// Unit, outwards. A hull's are turned when asked for, because most are not.
+  Vec<3> face_normal(std::uint32_t face) const {
+    return kind == ShapeKind::kHull ? rotate(rotation, faces[face].normal) : normals[face];
+  }
+  const Vec<3>& face_corner(std::uint32_t face) const {
+    return vertices[edges[faces[face].edge].origin];
+  }
+};
+
 template <int D>
 Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>& position,
                 const Polyhedra& polyhedra);
+
+/// The core of a probe whose pose has its position at the origin. In space a box may list its
+/// corners in any order. Other hulls of four or more points have no faces: casts, distances and
+/// what overlaps are as exact as for boxes; how deep such a core crosses another is the depth along
+/// the best face normal of the other one, or along axis 1 where that has none either.
+Core<2> core_of(const Probe<2>& probe, const Rotation<2>& rotation);
+Core<3> core_of(const Probe<3>& probe, const Rotation<3>& rotation);
 
 /// How far two shapes are apart, and where.
 template <int D>
@@ -41,14 +83,18 @@ struct Separation {
 /// The exact distance of two convex shapes, or for crossing cores the depth along the best edge
 /// normal. A one-sided segment is an edge with two sides here, but is left along its own normal.
 ///
+/// In space: over edges' cross products too, and exact within 1e-6 of the size of the cores, or of
+/// their distance where they are farther apart; cores nearer than that are left as crossing ones.
+///
 /// Unlike `collide`, which makes contacts for a solver and so may skip what a neighbour will make,
-/// this always answers. It tries every vertex against every edge: at most 128 tests, but no
-/// iteration that could stall. Ties go to the first found. @pre not two half-spaces.
+/// this always answers. In the plane it tries every vertex against every edge: at most 128 tests,
+/// but no iteration that could stall. Ties go to the first found. @pre not two half-spaces.
 template <int D>
 Separation<D> separation_of(const Core<D>& a, const Core<D>& b);
 
-/// Whether a chain's segment may be met along `normal` [unit, outwards]: on its free side and,
-/// where a neighbour continues it, between the normals of both. Other shapes: always.
+/// Whether a chain's segment or a mesh's triangle may be met along `normal` [unit, outwards]: on
+/// its free side and, where a neighbour continues it, between the normals of both. Other shapes:
+/// always.
 bool allows(const Core<2>& core, const Vec<2>& normal);
 bool allows(const Core<3>& core, const Vec<3>& normal);
 

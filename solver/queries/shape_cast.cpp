@@ -1,5 +1,6 @@
 #include "solver/queries/candidates.hpp"
 #include "solver/queries/casting.hpp"
+#include "solver/queries/solid_queries.hpp"
 
 namespace cycloid::solver {
 
@@ -83,8 +84,6 @@ static void enter_faces(const Core<2>& core, const Core<2>& probe, const Way<2>&
       offer(core, fraction, normal, core.vertices[i] + core.radius * normal, best);
     }
 }
-/// Space has no faces as yet.
-static void enter_faces(const Core<3>&, const Core<3>&, const Way<3>&, Entry<3>&) {}
 
 /// Whether the line of the way passes the core, or only touches its outline. The ends of a
 /// segment count, because a neighbour may continue there.
@@ -100,8 +99,17 @@ static bool passes(const Core<2>& core, const Core<2>& probe, const Way<2>& way)
   if (core.one_sided()) return lowest <= way.radius && highest >= -way.radius;
   return lowest < way.radius && highest > -way.radius;
 }
-static bool passes(const Core<3>&, const Core<3>&, const Way<3>&) {
-  return true;
+
+static Entry<2> enter_core(const Core<2>& core, const Core<2>& probe, const Vec<2>& translation) {
+  Entry<2> best{};
+  const float way_length = length(translation);
+  if (way_length <= 1.0e-12f) return best;
+  const Way<2> way{translation, (1.0f / way_length) * translation, way_length,
+                   core.radius + probe.radius};
+  if (!passes(core, probe, way)) return best;
+  enter_faces(core, probe, way, best);
+  enter_corners(core, probe, way, best);
+  return best;
 }
 
 template <int D>
@@ -121,15 +129,7 @@ static Entry<D> enter_half_space(const Core<D>& plane, const Core<D>& probe,
 template <int D>
 Entry<D> enter(const Core<D>& core, const Core<D>& probe, const Vec<D>& translation) {
   if (core.half_space()) return enter_half_space(core, probe, translation);
-  Entry<D> best{};
-  const float way_length = length(translation);
-  if (way_length <= 1.0e-12f) return best;
-  const Way<D> way{translation, (1.0f / way_length) * translation, way_length,
-                   core.radius + probe.radius};
-  if (!passes(core, probe, way)) return best;
-  enter_faces(core, probe, way, best);
-  enter_corners(core, probe, way, best);
-  return best;
+  return enter_core(core, probe, translation);
 }
 
 template <int D>
@@ -153,7 +153,7 @@ std::vector<QueryHit<D>> shape_cast(const WorldState<D>& state, const Probe<D>& 
                                     const Pose<D>& pose, const Vec<D>& translation,
                                     const QueryFilter& filter) {
   std::vector<QueryHit<D>> hits;
-  const Core<D> moving = core_of(shape_of(probe), pose.rotation, Vec<D>::zero(), state.polyhedra);
+  const Core<D> moving = core_of(probe, pose.rotation);
   const auto cast = [&](const Shape<D>& shape, const Pose<D>& relative) {
     const Core<D> core = core_of(shape, relative.rotation, relative.position, state.polyhedra);
     const Separation<D> start = separation_of(core, moving);

@@ -86,8 +86,7 @@ static float time_to_close(float room, float speed, float turning) {
 
 /// The part of the way in which the gap along `axis` surely stays above `level`; 2 and more: for
 /// ever.
-template <int D>
-static float safe_step(const Mover<D>& a, const Mover<D>& b, const Vec<D>& axis, float level) {
+static float safe_step(const Mover<2>& a, const Mover<2>& b, const Vec<2>& axis, float level) {
   float step = 2.0f;
   const std::uint32_t count_a = a.core.half_space() ? 1 : a.core.count;
   const std::uint32_t count_b = b.core.half_space() ? 1 : b.core.count;
@@ -107,16 +106,95 @@ static float safe_step(const Mover<D>& a, const Mover<D>& b, const Vec<D>& axis,
   return step;
 }
 
+/// The vertices of a core along an axis.
+struct Outline {
+  std::uint32_t count = 0;
+  std::array<Support, Dim<3>::kVertices> supports;
+};
+
+static Outline outline_of(const Mover<3>& mover, const Vec<3>& axis) {
+  Outline outline;
+  outline.count = mover.core.half_space() ? 1 : mover.core.count;
+  for (std::uint32_t i = 0; i < outline.count; ++i)
+    outline.supports[i] = support_of(mover, i, axis);
+  return outline;
+}
+
+/// Of the heights after `time` the one that reaches farthest: `side` 1: upwards, -1: downwards.
+static const Support& farthest_after(const Outline& outline, float side, float time) {
+  std::uint32_t best = 0;
+  float highest = -3.0e38f;
+  for (std::uint32_t i = 0; i < outline.count; ++i) {
+    const Support& support = outline.supports[i];
+    const float height =
+        side * (support.height + time * support.speed) + 0.5f * time * time * support.turning;
+    if (height <= highest) continue;
+    highest = height;
+    best = i;
+  }
+  return outline.supports[best];
+}
+
+/// How long no pair of vertices closes its gap: as the least `time_to_close` over all pairs, but
+/// only of those that are nearest at a time already found. Each such pair shortens the time until
+/// the pair that is nearest then has just closed; where that takes too many, all pairs are asked.
+static float time_until_close(const Outline& a, const Outline& b, float clearance) {
+  constexpr int kRounds = 16;
+  const auto time_of = [&](const Support& from, const Support& to) {
+    const float room = max(to.height - from.height - clearance, 0.0f);
+    return time_to_close(room, to.speed - from.speed, to.turning + from.turning);
+  };
+  float time = 2.0f;
+  for (int round = 0; round < kRounds; ++round) {
+    const Support& from = farthest_after(a, 1.0f, time);
+    const Support& to = farthest_after(b, -1.0f, time);
+    const float closes = time_of(from, to);
+    if (!(closes < time)) return time;
+    time = closes;
+  }
+  for (std::uint32_t i = 0; i < a.count; ++i)
+    for (std::uint32_t j = 0; j < b.count; ++j)
+      time = min(time, time_of(a.supports[i], b.supports[j]));
+  return time;
+}
+
+/// Every vertex at the greatest speed its turning can have: for long steps of fast spins the better
+/// bound. `side` as above.
+static Outline without_curve(const Mover<3>& mover, const Vec<3>& axis, float side,
+                             const Outline& outline) {
+  Outline straight = outline;
+  const float speed = dot(axis, mover.translation);
+  for (std::uint32_t i = 0; i < outline.count; ++i) {
+    straight.supports[i].speed = speed + side * outline.supports[i].turn_speed;
+    straight.supports[i].turning = 0.0f;
+  }
+  return straight;
+}
+
+static float safe_step(const Mover<3>& a, const Mover<3>& b, const Vec<3>& axis, float level) {
+  const Outline from = outline_of(a, axis);
+  const Outline to = outline_of(b, axis);
+  const float clearance = a.core.radius + b.core.radius + level;
+  const float parabola = time_until_close(from, to, clearance);
+  if (parabola >= 2.0f) return parabola;
+  const float line = time_until_close(without_curve(a, axis, 1.0f, from),
+                                      without_curve(b, axis, -1.0f, to), clearance);
+  return max(parabola, line);
+}
+
 /// Whether the two may touch where they are nearest: not from behind a segment.
 template <int D>
 static bool may_touch(const Core<D>& a, const Core<D>& b, const Separation<D>& between) {
   return allows(a, between.normal) && allows(b, -between.normal);
 }
 
-template <int D>
-static bool never_meet(const Shape<D>& a, const Shape<D>& b) {
-  const auto surface = [](const Shape<D>& shape) {
-    return shape.kind == ShapeKind::kSegment || shape.kind == ShapeKind::kHalfSpace;
+static bool one_sided(ShapeKind kind) {
+  return kind == ShapeKind::kSegment || kind == ShapeKind::kTriangle;
+}
+
+static bool never_meet(ShapeKind a, ShapeKind b) {
+  const auto surface = [](ShapeKind kind) {
+    return one_sided(kind) || kind == ShapeKind::kHalfSpace;
   };
   return surface(a) && surface(b);
 }
@@ -126,9 +204,9 @@ Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shap
                       const BodySweep<D>& sweep_b, float target, float tolerance,
                       const Polyhedra& polyhedra) {
   constexpr int kSteps = 64;
-  if (never_meet(a, b)) return {};
+  if (never_meet(a.kind, b.kind)) return {};
   const Vec<D> a_to_b = sweep_b.start.position - sweep_a.start.position;
-  const bool one_sided = a.kind == ShapeKind::kSegment || b.kind == ShapeKind::kSegment;
+  const bool sided = one_sided(a.kind) || one_sided(b.kind);
   const float level = target - 0.5f * tolerance;
   float fraction = 0.0f;
   bool stopped_before = false;
@@ -140,7 +218,7 @@ Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shap
     if (speed_max <= 1.0e-12f) return {};
     const Separation<D> between = separation_of(mover_a.core, mover_b.core);
     // What lies across a segment on the way has come from behind.
-    const bool from_behind = one_sided && between.crossing && i > 0;
+    const bool from_behind = sided && between.crossing && i > 0;
     const bool meets = !from_behind && may_touch(mover_a.core, mover_b.core, between);
     // A step this short changes the distance by a quarter of the tolerance at most.
     const float quarter = 0.25f * tolerance;

@@ -31,9 +31,10 @@ struct Impact {
 /// - Shapes that start closer than `target`: fraction 0 if their nearest points approach and the
 ///   way may lead deeper than target - tolerance / 2 (or, where they start below that, deeper by
 ///   tolerance / 4); no hit if they part or stay; otherwise where they approach later.
-/// - A chain's segment is hit on its free side and by the rules of its joints alone (query.hpp); a
-///   shape that comes from behind passes it.
-/// - Two segments, two half-spaces, or one of each never hit. @pre a half-space does not turn.
+/// - A chain's segment or a mesh's triangle is hit on its free side and by the rules of its joints
+///   alone (query.hpp); a shape that comes from behind passes it.
+/// - Two segments or triangles, two half-spaces, or one of each never hit. @pre a half-space does
+///   not turn.
 /// - At most 64 steps. Where they do not suffice (a graze while spinning) the impact is reported at
 ///   the fraction reached, before the true one; shapes that started closer pass.
 ///
