@@ -12,13 +12,13 @@ constexpr float kEps = 2.0e-3f;
 constexpr float kTolerance = 2.0e-3f;
 
 /// Bodies 0 and 1 of a state, as a joint sees them.
-struct Pair {
+struct JointedPair {
   WorldState<3> state;
   Joint<3> joint{};
   std::array<Vec<3>, 2> position;
   std::array<Rotation<3>, 2> rotation;
 
-  Pair() { state.bodies.resize(2); }
+  JointedPair() { state.bodies.resize(2); }
   JointFrame<3> frame() const {
     return make_frame(state, joint, position[0], position[1] - position[0], rotation[0],
                       rotation[1], 0.0f);
@@ -29,8 +29,8 @@ struct Pair {
     return rows;
   }
   /// Freedom 0 to 5 of a, then of b, moved by `eps`; positions before turns.
-  Pair moved(int freedom, float eps) const {
-    Pair pair = *this;
+  JointedPair moved(int freedom, float eps) const {
+    JointedPair pair = *this;
     const auto body = static_cast<std::size_t>(freedom / 6);
     const int i = freedom % 6;
     if (i < 3) {
@@ -51,8 +51,8 @@ static Vec<3> random_vec(std::mt19937& random, float size) {
   return v;
 }
 
-static Pair random_pair(JointKind kind, std::mt19937& random) {
-  Pair pair;
+static JointedPair random_pair(JointKind kind, std::mt19937& random) {
+  JointedPair pair;
   pair.joint.kind = kind;
   pair.joint.body_b = 1;
   pair.joint.anchor_a = random_vec(random, 0.8f);
@@ -87,7 +87,7 @@ static float entry(const Row<3>& row, int freedom) {
 
 /// `error_of` gives the C of which `row` is to be the derivative.
 template <class ErrorOf>
-static void expect_derivative(const Pair& pair, const Row<3>& row, ErrorOf&& error_of,
+static void expect_derivative(const JointedPair& pair, const Row<3>& row, ErrorOf&& error_of,
                               const char* name) {
   for (int freedom = 0; freedom < 12; ++freedom) {
     const float slope =
@@ -98,21 +98,22 @@ static void expect_derivative(const Pair& pair, const Row<3>& row, ErrorOf&& err
   }
 }
 
-static void expect_exact(const Pair& pair) {
+static void expect_exact(const JointedPair& pair) {
   const JointRows<3> rows = pair.rows();
   for (std::size_t r = 0; r < static_cast<std::size_t>(rows.count); ++r)
     expect_derivative(
-        pair, rows.rows[r], [&](const Pair& at) { return at.rows().rows[r].error; }, "row");
+        pair, rows.rows[r], [&](const JointedPair& at) { return at.rows().rows[r].error; }, "row");
   if (rows.has_axis)
     expect_derivative(
-        pair, rows.axis, [](const Pair& at) { return at.rows().axis.error; }, "axis");
+        pair, rows.axis, [](const JointedPair& at) { return at.rows().axis.error; }, "axis");
   if (rows.has_cone_axis)
     expect_derivative(
-        pair, rows.cone_axis, [](const Pair& at) { return at.rows().cone_axis.error; }, "cone");
+        pair, rows.cone_axis, [](const JointedPair& at) { return at.rows().cone_axis.error; },
+        "cone");
 }
 
 /// A pose whose twist and swing are far from where they jump.
-static bool is_smooth(const Pair& pair) {
+static bool is_smooth(const JointedPair& pair) {
   const JointRows<3> rows = pair.rows();
   if (!rows.has_axis || rows.has_motor_axis) return true;
   const AxisPair axes = axis_pair(pair.frame(), pair.joint.axis);
@@ -127,7 +128,7 @@ TEST(Joints3D, JacobianOfHingeWheelConeTwistAndSliderIsTheDerivativeOfTheErrorAn
       {JointKind::kHinge, 5}, {JointKind::kWheel, 4}, {JointKind::kConeTwist, 3}};
   for (const auto& [kind, count] : kinds)
     for (int trial = 0; trial < 40; ++trial) {
-      const Pair pair = random_pair(kind, random);
+      const JointedPair pair = random_pair(kind, random);
       if (!is_smooth(pair)) continue;
       const JointRows<3> rows = pair.rows();
       EXPECT_EQ(rows.count, count);
@@ -137,11 +138,12 @@ TEST(Joints3D, JacobianOfHingeWheelConeTwistAndSliderIsTheDerivativeOfTheErrorAn
       expect_exact(pair);
     }
   for (int trial = 0; trial < 12; ++trial) {
-    const Pair pair = random_pair(JointKind::kPrismatic, random);
+    const JointedPair pair = random_pair(JointKind::kPrismatic, random);
     const JointRows<3> rows = pair.rows();
     for (std::size_t r = 0; r < 2; ++r)
       expect_derivative(
-          pair, rows.rows[r], [&](const Pair& at) { return at.rows().rows[r].error; }, "row");
+          pair, rows.rows[r], [&](const JointedPair& at) { return at.rows().rows[r].error; },
+          "row");
   }
 }
 
@@ -149,7 +151,7 @@ TEST(Joints3D, JacobianOfHingeWheelConeTwistAndSliderIsTheDerivativeOfTheErrorAn
 TEST(Joints3D, JacobianOfAWheelsMotorIsTheDerivativeOfItsAngleWhereTheAxlesMeet) {
   std::mt19937 random(5);
   for (int trial = 0; trial < 12; ++trial) {
-    Pair pair = random_pair(JointKind::kWheel, random);
+    JointedPair pair = random_pair(JointKind::kWheel, random);
     const Joint<3>& joint = pair.joint;
     const Rotation<3> steered = rotation_by(joint.steering * joint.axis);
     const Rotation<3> spun = rotation_by((0.2f * static_cast<float>(trial) - 1.0f) * joint.axle);
@@ -158,7 +160,7 @@ TEST(Joints3D, JacobianOfAWheelsMotorIsTheDerivativeOfItsAngleWhereTheAxlesMeet)
     EXPECT_NEAR(rows.rows[2].error, 0.0f, 1.0e-6f);
     EXPECT_NEAR(rows.rows[3].error, 0.0f, 1.0e-6f);
     ASSERT_TRUE(rows.has_motor_axis);
-    const auto angle_of = [&](const Pair& at) {
+    const auto angle_of = [&](const JointedPair& at) {
       const Rotation<3> since =
           compose(conjugate(at.rotation[0]), compose(at.rotation[1], conjugate(joint.reference)));
       return twist_angle(compose(conjugate(steered), since), joint.axle);
@@ -169,8 +171,8 @@ TEST(Joints3D, JacobianOfAWheelsMotorIsTheDerivativeOfItsAngleWhereTheAxlesMeet)
 }
 
 /// b swung by `swing` about a direction across x, which is the axis, after a twist of 0.7 rad.
-static Pair swung(float swing, float azimuth) {
-  Pair pair;
+static JointedPair swung(float swing, float azimuth) {
+  JointedPair pair;
   pair.joint.kind = JointKind::kConeTwist;
   pair.joint.body_b = 1;
   pair.joint.limit_enabled = 1;

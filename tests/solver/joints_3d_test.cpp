@@ -171,25 +171,6 @@ TEST(Joints3D, ASliderStopsAtItsLimitsAndItsMotorsHoldIt) {
   }
 }
 
-// What the slider is fixed to turns through every attitude; its coordinates across must not jump.
-TEST(Joints3D, ASliderOnATurningBodyKeepsItsImpulsesAsItsAxisTurns) {
-  Scene<3> scene(Tuning::soft_step(), false);
-  const BodyId hub = scene.add_ball(Vec<3>::zero(), 1000.0f, 1.0f);
-  const BodyId bead = scene.add_ball({{1.5f, 0.0f, 0.0f}}, 1.0f);
-  JointDef<3> def = scene.joint(JointKind::kPrismatic, hub, bead);
-  def.anchor_a = {{1.5f, 0.0f, 0.0f}};
-  def.axis = {{0.0f, 0.0f, 1.0f}};
-  const JointId id = scene.create(def);
-  const Vec<3> spin = {{0.0f, 2.0f, 0.0f}};
-  ASSERT_TRUE(scene.world.set_velocity(hub, Vec<3>::zero(), spin).ok());
-  ASSERT_TRUE(scene.world.set_velocity(bead, cross(spin, {{1.5f, 0.0f, 0.0f}}), spin).ok());
-  for (int tick = 0; tick < 200; ++tick) {
-    step(scene.world, 1);
-    ASSERT_LT(scene.error(id), 3.0e-3f) << tick;
-    if (std::abs(scene.rows(id).axis.error) > 20.0f) break;
-  }
-}
-
 /// A wheel below the origin, its suspension upright and its axle along x.
 static JointDef<3> wheel(Scene<3>& scene, BodyId a, float mass) {
   const BodyId b = scene.add_ball({{0.0f, -1.0f, 0.0f}}, mass);
