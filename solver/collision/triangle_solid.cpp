@@ -75,8 +75,12 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
   const Vec<3> own = triangle.normals[0];
   const float preferred = preference(solid);
   Vec<3> sides[3];
-  for (std::uint32_t i = 0; i < 3; ++i)
+  std::array<float, kHullFacesMax> turns[3];
+  for (std::uint32_t i = 0; i < 3; ++i) {
     sides[i] = triangle.vertices[i == 2 ? 0 : i + 1] - triangle.vertices[i];
+    for (std::uint32_t f = 0; f < solid.face_count; ++f)
+      turns[i][f] = dot(solid.normals[f], sides[i]);
+  }
   for (std::uint32_t e = 0; e < solid.edge_count; e += 2) {
     const PolyhedronEdge& half = solid.edges[e];
     const PolyhedronEdge& twin = solid.edges[e + 1];
@@ -84,8 +88,8 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
     const Vec<3> along = solid.vertices[twin.origin] - origin;
     const float rise = dot(along, own);
     for (std::uint32_t i = 0; i < 3; ++i) {
-      const float turn = dot(solid.normals[half.face], sides[i]);
-      if (turn * dot(solid.normals[twin.face], sides[i]) >= 0.0f || turn * rise <= 0.0f) continue;
+      const float turn = turns[i][half.face];
+      if (turn * turns[i][twin.face] >= 0.0f || turn * rise <= 0.0f) continue;
       const Vec<3> axis = turn > 0.0f ? cross(sides[i], along) : cross(along, sides[i]);
       const float square = dot(axis, axis);
       // Nearly parallel edges: the faces stand in for them.
