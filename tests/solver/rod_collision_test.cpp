@@ -325,6 +325,37 @@ TEST(RodCollision, FeaturesPersistUnderSmallMotion) {
   EXPECT_LE(changed, 4);
 }
 
+// Sizes by a power of two change no digit: nothing in it has a length of its own.
+TEST(RodCollision, IsTheSameAtAllSizes) {
+  Draw draw;
+  int met = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec<3> half = {{0.3f, 0.5f, 0.7f}};
+    const Rotation<3> turn = draw.rotation();
+    const Rod a = {draw.vector(1.0f), draw.vector(1.0f), 0.3f};
+    const Rod b = {draw.vector(1.0f), draw.vector(1.0f), 0.2f};
+    for (const float size : {1.0f / 1024.0f, 1024.0f}) {
+      const auto scaled = [&](const Rod& r) {
+        return Rod{size * r.from, size * r.to, size * r.radius};
+      };
+      const Manifold<3> pairs[2][2] = {
+          {rod_against_rod(a, b, kZero, 0.1f),
+           rod_against_rod(scaled(a), scaled(b), kZero, 0.1f * size)},
+          {solid_against_rod(make_box(half, kZero, turn), a, kZero, 0.1f),
+           solid_against_rod(make_box(size * half, kZero, turn), scaled(a), kZero, 0.1f * size)}};
+      for (const auto& [one, other] : pairs) {
+        ASSERT_EQ(one.point_count, other.point_count);
+        met += static_cast<int>(one.point_count);
+        for (std::uint32_t k = 0; k < one.point_count; ++k) {
+          ASSERT_EQ(size * one.points[k].separation, other.points[k].separation);
+          ASSERT_EQ(one.points[k].feature, other.points[k].feature);
+        }
+      }
+    }
+  }
+  EXPECT_GT(met, 2000);
+}
+
 TEST(RodCollision, HalfSpaceMeetsABallInOnePointAndACapsuleInTwo) {
   const Vec<3> up = {{0.0f, 1.0f, 0.0f}};
   const Rod ball = {{{1.0f, 0.5f, 0.0f}}, {{1.0f, 0.5f, 0.0f}}, 0.75f};
