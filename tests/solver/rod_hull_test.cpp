@@ -6,16 +6,16 @@
 namespace cycloid::solver {
 
 using Triple = std::array<double, 3>;
-Triple triple(const Vec<3>& v) {
+static Triple triple(const Vec<3>& v) {
   return {v[0], v[1], v[2]};
 }
-Triple sum(const Triple& a, const Triple& b, double scale) {
+static Triple sum(const Triple& a, const Triple& b, double scale) {
   return {a[0] + scale * b[0], a[1] + scale * b[1], a[2] + scale * b[2]};
 }
-double inner(const Triple& a, const Triple& b) {
+static double inner(const Triple& a, const Triple& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-Triple outer(const Triple& a, const Triple& b) {
+static Triple outer(const Triple& a, const Triple& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
 
@@ -79,7 +79,7 @@ struct Octahedron {
   }
 };
 
-double point_to_triangle(const Triple& p, const std::array<Triple, 3>& t) {
+static double point_to_triangle(const Triple& p, const std::array<Triple, 3>& t) {
   double nearest = 1e30;
   const Triple normal = outer(sum(t[1], t[0], -1.0), sum(t[2], t[0], -1.0));
   bool over = true;
@@ -96,7 +96,7 @@ double point_to_triangle(const Triple& p, const std::array<Triple, 3>& t) {
 }
 
 /// Of the axis of a rod from a hull; negative: the least it has to move to leave it.
-double hull_distance(const Octahedron& shape, const Solid& hull, const Rod& rod) {
+static double hull_distance(const Octahedron& shape, const Solid& hull, const Rod& rod) {
   const Triple from = triple(rod.from);
   const Triple along = sum(triple(rod.to), from, -1.0);
   std::vector<std::array<Triple, 3>> triangles;
