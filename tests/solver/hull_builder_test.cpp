@@ -155,6 +155,45 @@ TEST(HullBuilder, ClosesOverTenThousandRandomClouds) {
   EXPECT_GT(merged, 1800);  // Of the 2,000 on a grid.
 }
 
+/// Points off a grid, a shallow cap, a cylinder and clusters by about as much as the tolerance.
+static Points uneven_cloud(int kind, std::mt19937& random) {
+  std::uniform_real_distribution<float> within_one(-1.0f, 1.0f);
+  std::normal_distribution<float> normal;
+  const auto count = static_cast<int>(8 + random() % 248);
+  const float noise = std::pow(10.0f, -7.0f + 3.0f * std::abs(within_one(random)));
+  Points points = octahedron_points(1.0f);
+  for (int i = 0; i < count - 6; ++i) {
+    Vec<3> p = {{within_one(random), within_one(random), within_one(random)}};
+    if (kind == 0)
+      for (float& x : p.v) x = std::round(3.0f * x) / 3.0f;
+    if (kind == 1) p[2] = 1.0f + 1.0e-3f * (1.0f - p[0] * p[0] - p[1] * p[1]);
+    if (kind == 2) {
+      const float angle = 6.2831853f * std::round(16.0f * p[0]) / 16.0f;
+      p = {{std::cos(angle), std::round(p[1]), std::sin(angle)}};
+    }
+    if (kind == 3)
+      for (float& x : p.v) x = std::round(x);
+    for (float& x : p.v) x += noise * normal(random);
+    points.push_back(p);
+  }
+  return points;
+}
+
+TEST(HullBuilder, KeepsItsPromisesWhereNothingIsQuiteFlat) {
+  std::mt19937 random(5);
+  int refused = 0;
+  for (int run = 0; run < 2000; ++run) {
+    const Points points = uneven_cloud(run % 4, random);
+    PolyhedronData hull;
+    if (!build_polyhedron(points, hull).ok()) {
+      ++refused;  // More than 64 corners.
+      continue;
+    }
+    ASSERT_NO_FATAL_FAILURE(expect_hull(hull, points)) << run;
+  }
+  EXPECT_LT(refused, 500);
+}
+
 TEST(HullBuilder, RefusesWhatSpansNoVolume) {
   expect_refused({});
   expect_refused(Points(10, Vec<3>{{1, 2, 3}}));
