@@ -24,7 +24,7 @@ static SceneBody hills() {
       const float x = 2.0f * static_cast<float>(column);
       solver::sin_cos(0.35f * x, sine, cosine);
       const float side = static_cast<float>(row) - 0.5f * (kRows - 1);
-      const float height = 0.012f * max(x - 14.0f, 0.0f) * (1.0f + sine);
+      const float height = 0.012f * solver::max(x - 14.0f, 0.0f) * (1.0f + sine);
       field.heights.push_back(height + 0.01f * side * side);
     }
   return body;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/collision/segments.hpp"
 #include "solver/collision/solid.hpp"
 
 namespace cycloid::solver {
@@ -16,24 +17,6 @@ inline Vec<3> point_on(const Rod& rod, float fraction) {
 
 /// What is within this cosine of lying flat on a face is met along the face's normal.
 inline constexpr float kLiesFlat = 0.9998f;
-
-/// The nearest points of two segments.
-struct SegmentPair {
-  Vec<3> on_a;
-  Vec<3> on_b;
-  float fraction_a;  ///< Along a, 0 at its first end and 1 at its second: exactly at the ends.
-  float fraction_b;
-  float distance;  ///< m.
-  bool crossing;   ///< Both points lie inside, and the segments are not parallel.
-};
-
-/// The nearest points of two segments, of which either may be a point. Of parallel segments it is
-/// a pair with at least one end; of equally near pairs the first in the order b.from, b.to,
-/// a.from, a.to.
-/// Source: Ericson, "Real-Time Collision Detection" (2005), 5.1.9; the denominator is taken from
-/// the cross product, which loses nothing where the segments are nearly parallel.
-SegmentPair nearest_points(const Vec<3>& a_from, const Vec<3>& a_to, const Vec<3>& b_from,
-                           const Vec<3>& b_to);
 
 /// The unit normal from a to b at their nearest points: the line between these; where the segments
 /// cross the normal of both, so that it does not depend on a small distance; where they touch one

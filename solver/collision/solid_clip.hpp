@@ -56,15 +56,6 @@ std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal);
 FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_b,
                     float separation);
 
-/// The points nearest to each other on the segments from p0 to p1 and from q0 to q1, of positive
-/// length; of parallel ones some such pair. Source: Ericson (2005), 5.1.9.
-struct NearestPoints {
-  Vec<3> p;
-  Vec<3> q;
-};
-NearestPoints nearest_points(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0,
-                             const Vec<3>& q1);
-
 /// In place of a clip edge: the point is a corner of the incident solid, in place of its edge.
 inline constexpr std::uint32_t kCorner = 0x3ffu;
 

@@ -1,33 +1,10 @@
+#include "solver/collision/segments.hpp"
 #include "solver/collision/solid_clip.hpp"
 
 namespace cycloid::solver {
 
 /// The feature of the one point of solids apart whose nearest features are not an axis' own.
 static constexpr std::uint32_t kNearest = 0x60000000u;
-
-NearestPoints nearest_points(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0,
-                             const Vec<3>& q1) {
-  const Vec<3> u = p1 - p0;
-  const Vec<3> v = q1 - q0;
-  const Vec<3> r = p0 - q0;
-  const float a = dot(u, u);
-  const float e = dot(v, v);
-  const float b = dot(u, v);
-  const float c = dot(u, r);
-  const float f = dot(v, r);
-  const float denominator = a * e - b * b;
-  // Parallel within 1e-3 rad: any pair across will do; the ends are settled below.
-  float s = denominator > 1.0e-6f * a * e ? clamp((b * f - c * e) / denominator, 0.0f, 1.0f) : 0.0f;
-  float t = (b * s + f) / e;
-  if (t < 0.0f) {
-    t = 0.0f;
-    s = clamp(-c / a, 0.0f, 1.0f);
-  } else if (t > 1.0f) {
-    t = 1.0f;
-    s = clamp((b - c) / a, 0.0f, 1.0f);
-  }
-  return {p0 + s * u, q0 + t * v};
-}
 
 /// The extent of a solid along a direction, m.
 struct Extent {
@@ -64,23 +41,25 @@ struct Separation {
 
 /// The nearest points of any two edges, if they are no farther apart than `margin`: these lie
 /// within the margin less the separation of the planes that bound the solids along the axis.
-static NearestPoints nearest_edges(const Solid& a, const Solid& b, const Separation& axis,
-                                   float margin) {
+static SegmentPair nearest_edges(const Solid& a, const Solid& b, const Separation& axis,
+                                 float margin) {
   const float depth = margin - axis.separation;
   Edges edges_a;
   Edges edges_b;
   edges_above(a, axis.normal, extent_of(a, axis.normal).high - depth, edges_a);
   edges_above(b, -axis.normal, -extent_of(b, axis.normal).low - depth, edges_b);
-  NearestPoints nearest = {a.vertices[0], b.vertices[0]};
+  SegmentPair nearest{};
+  nearest.on_a = a.vertices[0];
+  nearest.on_b = b.vertices[0];
   float least = 1.0e30f;
   for (std::uint32_t i = 0; i < edges_a.count; ++i) {
     const Vec<3> p0 = a.vertices[a.edges[edges_a.index[i]].origin];
     const Vec<3> p1 = a.vertices[end_of(a, edges_a.index[i])];
     for (std::uint32_t j = 0; j < edges_b.count; ++j) {
       const std::uint32_t edge = edges_b.index[j];
-      const NearestPoints here =
+      const SegmentPair here =
           nearest_points(p0, p1, b.vertices[b.edges[edge].origin], b.vertices[end_of(b, edge)]);
-      const Vec<3> between = here.q - here.p;
+      const Vec<3> between = here.on_b - here.on_a;
       const float squared = dot(between, between);
       if (squared >= least) continue;
       least = squared;
@@ -93,16 +72,16 @@ static NearestPoints nearest_edges(const Solid& a, const Solid& b, const Separat
 /// One point between p on a and q on b, on the axis along which the solids are farther apart: the
 /// one given or the line between the points. None where these are farther than the margin.
 static Manifold<3> touch_between(const Solid& a, const Solid& b, Separation axis,
-                                 const NearestPoints& points, std::uint32_t feature,
+                                 const SegmentPair& points, std::uint32_t feature,
                                  const Vec<3>& a_to_b, float margin) {
   Manifold<3> manifold;
-  const Vec<3> between = points.q - points.p;
+  const Vec<3> between = points.on_b - points.on_a;
   if (length(between) > margin) return manifold;
   const Vec<3> line = normalized_or(between, axis.normal);
   const float gap = extent_of(b, line).low - extent_of(a, line).high;
   if (gap > axis.separation) axis = {line, gap};
   manifold.normal = axis.normal;
-  add_point(points.p + 0.5f * between, axis.separation, feature, a_to_b, manifold);
+  add_point(points.on_a + 0.5f * between, axis.separation, feature, a_to_b, manifold);
   return manifold;
 }
 
@@ -166,16 +145,16 @@ Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, co
 Manifold<3> touch_edges(const EdgePair& pair, const Vec<3>& a_to_b, float margin) {
   const Solid& a = pair.a;
   const Solid& b = pair.b;
-  const NearestPoints points =
+  const SegmentPair points =
       nearest_points(a.vertices[a.edges[pair.edge_a].origin], a.vertices[end_of(a, pair.edge_a)],
                      b.vertices[b.edges[pair.edge_b].origin], b.vertices[end_of(b, pair.edge_b)]);
-  const Vec<3> between = points.q - points.p;
+  const Vec<3> between = points.on_b - points.on_a;
   // Apart, and the nearest points do not lie within the edges, so there may be nearer ones.
   if (pair.separation > 0.0f && length(between) > pair.separation + 1.0e-4f)
     return touch_nearest(a, b, {pair.normal, pair.separation}, a_to_b, margin);
   Manifold<3> manifold;
   manifold.normal = pair.normal;
-  add_point(points.p + 0.5f * between, pair.separation, edge_feature(pair.edge_a, pair.edge_b),
+  add_point(points.on_a + 0.5f * between, pair.separation, edge_feature(pair.edge_a, pair.edge_b),
             a_to_b, manifold);
   return manifold;
 }
