@@ -1,0 +1,46 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+#include "tests/oracle/pairs.hpp"
+
+namespace cycloid::oracle {
+
+/// What is wrong with a manifold: a short name that failures are counted by, and the numbers.
+struct Complaint {
+  std::string what;
+  std::string numbers;
+};
+
+/// How far a manifold may be from the truth, m per m of the pair's scale.
+struct Tolerance {
+  double exact = 1e-4;  ///< Rounding, and the 2^-13 m grid of nothing: floats of up to 5 m.
+  /// By which an axis of a face is taken rather than a better one of two edges, and the axis of
+  /// the first shape rather than the second's.
+  double preference = 3e-3;
+
+  /// For this pair, m.
+  double of(const Pair& pair) const {
+    const bool edges = pair.a->kind != Kind::kHalfSpace && pair.b->kind != Kind::kHalfSpace &&
+                       !is_round(pair.a->kind) && !is_round(pair.b->kind);
+    return (exact + (edges ? preference : 0.0)) * pair.scale();
+  }
+};
+
+/// All that `solver::collide` promises about the pair, in both orders and 1024 m away:
+/// - finite numbers, a unit normal, at most four points with features of their own, none farther
+///   than the margin; both anchors of a point are one place;
+/// - the two points of the surfaces that a contact point stands for lie in the bodies;
+/// - no points where the widest gap over the axes of separation is beyond the margin, and at least
+///   one where the distance is below it;
+/// - the least separation is the depth of bodies that overlap; that of separated bodies lies
+///   between the widest gap over the axes of separation and the distance, which only differ where
+///   corners are nearest;
+/// - along the normal the bodies overlap no deeper than they must;
+/// - a triangle pushes only to its free side. What lies mostly behind it, or gets out of it
+///   sooner to the back, has no separation to be compared with.
+std::vector<Complaint> complaints_about(const Pair& pair, const solver::Polyhedra& polyhedra,
+                                        const Tolerance& tolerance);
+
+}  // namespace cycloid::oracle
