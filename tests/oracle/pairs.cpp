@@ -7,6 +7,8 @@ namespace cycloid::oracle {
 
 using solver::Pose;
 
+static constexpr double kTouching = 1e-5;  ///< m.
+
 double Pair::scale() const {
   return std::max({1.0, a->size, b->size});
 }
@@ -46,9 +48,10 @@ Truth truth_of(const Pair& pair, const PlacedPair& bodies) {
   }
   const Distance apart = distance(bodies.a, bodies.b);
   const double radii = bodies.a.radius + bodies.b.radius;
-  truth.proved = apart.value - apart.lower_bound < 1e-9;
+  // Of bodies that all but touch the direction is lost in rounding; their gap is not.
+  const bool meet = apart.value < kTouching;
+  truth.proved = meet || apart.value - apart.lower_bound < 1e-9;
   truth.gap = {apart.value - radii, apart.direction};
-  const bool meet = apart.value <= 1e-9;
   if (meet) truth.gap = widest_gap(bodies.a, bodies.b);
   truth.lower = truth.gap.value;
   const bool near = truth.gap.value < 2 * pair.margin;

@@ -30,7 +30,7 @@ PlacedPair place(const Pair& pair);
 struct Truth {
   Gap gap;
   double lower = 0.0;  ///< Widest gap along an axis of separation; the gap itself with half-spaces.
-  bool proved = true;  ///< The distance equals its lower bound within 1e-9.
+  bool proved = true;  ///< A distance beyond 1e-5 m equals its lower bound within 1e-9 m.
 };
 
 Truth truth_of(const Pair& pair, const PlacedPair& bodies);
