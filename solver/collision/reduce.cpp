@@ -1,0 +1,98 @@
+#include "solver/collision/solid.hpp"
+
+namespace cycloid::solver {
+
+/// Depths [m] within this of the deepest count as equal.
+static constexpr float kDepthTolerance = 1.0e-4f;
+/// A distance or area has to be larger by this part to win, so that equal ones stay equal under
+/// rounding.
+static constexpr float kMeasureTolerance = 1.001f;
+
+static std::size_t deepest_of(std::span<const Candidate> candidates) {
+  float lowest = candidates[0].separation;
+  for (const Candidate& candidate : candidates) lowest = min(lowest, candidate.separation);
+  std::size_t i = 0;
+  while (candidates[i].separation > lowest + kDepthTolerance) ++i;
+  return i;
+}
+
+/// The candidate with the largest positive measure, or `none` where no measure exceeds `least`.
+template <class Measure>
+static std::size_t largest_of(std::size_t count, std::size_t none, float least,
+                              const Measure& measure) {
+  std::size_t best = none;
+  float threshold = least;
+  for (std::size_t i = 0; i < count; ++i) {
+    const float value = measure(i);
+    if (value <= threshold) continue;
+    best = i;
+    threshold = kMeasureTolerance * value;
+  }
+  return best;
+}
+
+/// Indices of the points that stay, at most four.
+struct Choice {
+  std::size_t index[4];
+  std::size_t count = 0;
+
+  void add(std::size_t i) { index[count++] = i; }
+};
+
+static Choice choose(std::span<const Candidate> candidates, const Vec<3>& normal) {
+  const std::size_t none = candidates.size();
+  Choice choice;
+  const std::size_t first = deepest_of(candidates);
+  choice.add(first);
+  const Vec<3> p = candidates[first].at;
+  const std::size_t second = largest_of(none, none, 0.0f, [&](std::size_t i) {
+    const Vec<3> arm = candidates[i].at - p;
+    return dot(arm, arm);
+  });
+  if (second == none) return choice;
+  choice.add(second);
+  const Vec<3> q = candidates[second].at;
+  const Vec<3> base = q - p;
+  const Vec<3> across = cross(normal, base);
+  // A triangle flatter than this part of its base squared is a line.
+  const float flat = 1.0e-5f * dot(base, base);
+  const std::size_t third = largest_of(
+      none, none, flat, [&](std::size_t i) { return abs(dot(across, candidates[i].at - p)); });
+  if (third == none) {
+    // All lie on a line: the deepest may lie within it, so keep its other end.
+    const std::size_t end = largest_of(none, none, dot(base, base), [&](std::size_t i) {
+      const Vec<3> arm = candidates[i].at - q;
+      return dot(arm, arm);
+    });
+    if (end != none) choice.add(end);
+    return choice;
+  }
+  choice.add(third);
+  const Vec<3> r = candidates[third].at;
+  const float side = dot(across, r - p) < 0.0f ? -1.0f : 1.0f;
+  const Vec<3> outward[3] = {-side * across, -side * cross(normal, r - q),
+                             -side * cross(normal, p - r)};
+  const std::size_t fourth = largest_of(none, none, flat, [&](std::size_t i) {
+    const Vec<3> at = candidates[i].at;
+    return max(dot(outward[0], at - p), max(dot(outward[1], at - q), dot(outward[2], at - r)));
+  });
+  if (fourth != none) choice.add(fourth);
+  return choice;
+}
+
+void reduce(std::span<const Candidate> candidates, const Vec<3>& a_to_b, Manifold<3>& manifold) {
+  const auto add = [&](const Candidate& candidate) {
+    add_point(candidate.at, candidate.separation, candidate.feature, a_to_b, manifold);
+  };
+  if (candidates.size() <= 4) {
+    for (const Candidate& candidate : candidates) add(candidate);
+    return;
+  }
+  // In the order of the candidates, which changes less from tick to tick than that of the choice.
+  const Choice choice = choose(candidates, manifold.normal);
+  for (std::size_t i = 0; i < candidates.size(); ++i)
+    for (std::size_t k = 0; k < choice.count; ++k)
+      if (choice.index[k] == i) add(candidates[i]);
+}
+
+}  // namespace cycloid::solver

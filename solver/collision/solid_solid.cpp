@@ -1,0 +1,152 @@
+#include "solver/collision/solid_clip.hpp"
+
+namespace cycloid::solver {
+
+struct FaceAxis {
+  std::uint32_t face = 0;
+  std::uint32_t support = 0;  ///< The other's vertex that is deepest below the face.
+  float separation = kNoSeparation;
+};
+
+/// The face of a that b is farthest outside of. A face is given up at the first vertex of b that
+/// shows that it cannot win; the vertex that was deepest last is tried first.
+static FaceAxis best_face(const Solid& a, const Solid& b, const AxisTolerance& tolerance,
+                          float margin) {
+  FaceAxis best;
+  float threshold = kNoSeparation;
+  std::uint32_t guess = 0;
+  for (std::uint32_t face = 0; face < a.face_count; ++face) {
+    const Vec<3> normal = a.normals[face];
+    const float offset = a.offset(face);
+    float lowest = dot(normal, b.vertices[guess]) - offset;
+    for (std::uint32_t i = 0; i < b.vertex_count && lowest > threshold; ++i) {
+      const float height = dot(normal, b.vertices[i]) - offset;
+      if (height >= lowest) continue;
+      lowest = height;
+      guess = i;
+    }
+    if (lowest <= threshold) continue;
+    best = {face, guess, lowest};
+    if (lowest > margin) break;
+    threshold = tolerance.beyond(lowest);
+  }
+  return best;
+}
+
+/// Even half-edges, in their order.
+struct Edges {
+  std::uint32_t index[kHullEdgesMax / 2];
+  std::uint32_t count = 0;
+};
+
+/// The edges of a that may give an axis with a separation above `threshold`. Every axis of an edge
+/// lies between the normals of its faces, so a point of b below both of them by -threshold tells
+/// that none does; the points tried are b's centre and `support`.
+static void promising_edges(const Solid& a, const Solid& b, std::uint32_t support, float threshold,
+                            Edges& edges) {
+  const float limit = min(threshold, 0.0f);
+  std::uint8_t below[kHullFacesMax];
+  for (std::uint32_t face = 0; face < a.face_count; ++face) {
+    const float level = a.offset(face) + limit;
+    const unsigned centre = dot(a.normals[face], b.centre) <= level ? 1u : 0u;
+    const unsigned vertex = dot(a.normals[face], b.vertices[support]) <= level ? 2u : 0u;
+    below[face] = static_cast<std::uint8_t>(centre | vertex);
+  }
+  for (std::uint32_t e = 0; e < a.edge_count; e += 2)
+    if ((below[a.edges[e].face] & below[a.edges[e + 1].face]) == 0) edges.index[edges.count++] = e;
+}
+
+/// An edge as an arc between the normals of its faces.
+struct Arc {
+  Vec<3> from;
+  Vec<3> to;
+  Vec<3> along;  ///< The edge, m: along cross(from, to).
+  Vec<3> origin;
+};
+static Arc arc_of(const Solid& solid, std::uint32_t edge) {
+  const PolyhedronEdge& half = solid.edges[edge];
+  const PolyhedronEdge& twin = solid.edges[edge + 1];
+  const Vec<3> origin = solid.vertices[half.origin];
+  return {solid.normals[half.face], solid.normals[twin.face], solid.vertices[twin.origin] - origin,
+          origin};
+}
+
+/// Whether the arc of a crosses the arc of b turned round: whether the edges make a face of the
+/// Minkowski difference.
+static bool arcs_cross(const Arc& a, const Arc& b) {
+  const float from_b = dot(b.from, a.along);
+  const float to_b = dot(b.to, a.along);
+  if (from_b * to_b >= 0.0f) return false;
+  const float from_a = dot(a.from, b.along);
+  const float to_a = dot(a.to, b.along);
+  return from_a * to_a < 0.0f && from_b * to_a < 0.0f;
+}
+
+struct EdgeAxis {
+  std::uint32_t edge_a = 0;
+  std::uint32_t edge_b = 0;
+  float separation = kNoSeparation;
+  Vec<3> normal;
+};
+
+/// Edges that are parallel within 1e-3 rad have no axis.
+static constexpr float kParallelSquared = 1.0e-6f;
+
+/// The first edge pair that exceeds `threshold`, and of later ones what is better beyond tolerance.
+static EdgeAxis best_edges(const Solid& a, const Edges& edges_a, const Solid& b,
+                           const Edges& edges_b, const AxisTolerance& tolerance, float threshold) {
+  EdgeAxis best;
+  for (std::uint32_t i = 0; i < edges_a.count; ++i) {
+    const Arc arc_a = arc_of(a, edges_a.index[i]);
+    const Vec<3> middle = arc_a.from + arc_a.to;
+    for (std::uint32_t j = 0; j < edges_b.count; ++j) {
+      const Arc arc_b = arc_of(b, edges_b.index[j]);
+      if (!arcs_cross(arc_a, arc_b)) continue;
+      Vec<3> across = cross(arc_a.along, arc_b.along);
+      const float squared = dot(across, across);
+      const float parallel =
+          kParallelSquared * dot(arc_a.along, arc_a.along) * dot(arc_b.along, arc_b.along);
+      if (squared <= parallel) continue;
+      if (dot(across, middle) < 0.0f) across = -across;
+      const float size = sqrt(squared);
+      const float scaled = dot(across, arc_b.origin - arc_a.origin);
+      if (scaled <= threshold * size) continue;
+      best = {edges_a.index[i], edges_b.index[j], scaled / size, (1.0f / size) * across};
+      threshold = tolerance.beyond(best.separation);
+    }
+  }
+  return best;
+}
+
+/// A length that does not change as the solid turns.
+static float size_of(const Solid& solid) {
+  if (solid.kind == ShapeKind::kBox) return min(min(solid.half[0], solid.half[1]), solid.half[2]);
+  return length(solid.vertices[0] - solid.centre);
+}
+
+/// Axes in the order: faces of a, faces of b, edges of a across edges of b, a's first; a later one
+/// has to be better by AxisTolerance. Source: Gregorius, "The Separating Axis Test between Convex
+/// Polyhedra" (GDC 2013).
+Manifold<3> solid_against_solid(const Solid& a, const Solid& b, const Vec<3>& a_to_b,
+                                float margin) {
+  const AxisTolerance tolerance(min(size_of(a), size_of(b)));
+  const FaceAxis face_a = best_face(a, b, tolerance, margin);
+  if (face_a.separation > margin) return {};
+  const FaceAxis face_b = best_face(b, a, tolerance, margin);
+  if (face_b.separation > margin) return {};
+  const bool on_b = face_b.separation > tolerance.beyond(face_a.separation);
+  const FaceAxis& face = on_b ? face_b : face_a;
+  const float threshold = tolerance.beyond_faces(face.separation);
+  Edges edges_a;
+  Edges edges_b;
+  promising_edges(a, b, face_a.support, threshold, edges_a);
+  if (edges_a.count > 0) promising_edges(b, a, face_b.support, threshold, edges_b);
+  const EdgeAxis edges = best_edges(a, edges_a, b, edges_b, tolerance, threshold);
+  if (edges.separation > margin) return {};
+  if (edges.separation > kNoSeparation)
+    return touch_edges({a, b, edges.edge_a, edges.edge_b, edges.normal, edges.separation}, a_to_b,
+                       margin);
+  return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, a_to_b, margin);
+}
+
+}  // namespace cycloid::solver
