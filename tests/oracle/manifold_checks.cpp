@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <cstring>
 #include <sstream>
+#include <utility>
 
 #include "solver/collision/collide.hpp"
 
@@ -12,8 +13,31 @@ using solver::Manifold;
 using solver::ManifoldPoint;
 using solver::Vec;
 
+double Tolerance::of(const Pair& pair, double gap) const {
+  const double exact = rounding * pair.scale();
+  if (is_round(pair.a->kind) || is_round(pair.b->kind)) return exact;
+  if (pair.a->kind == Kind::kHalfSpace || pair.b->kind == Kind::kHalfSpace)
+    return exact + reduction;
+  return exact + reduction + preference + preference_of_depth * std::max(0.0, -gap);
+}
+
 static Vector to_double(const Vec<3>& v) {
   return {v[0], v[1], v[2]};
+}
+
+static std::string describe(const Manifold<3>& manifold) {
+  std::ostringstream out;
+  out.precision(9);
+  const auto print = [&](const Vec<3>& v) { out << v[0] << " " << v[1] << " " << v[2]; };
+  out << "\n normal ";
+  print(manifold.normal);
+  for (std::uint32_t i = 0; i < std::min(manifold.point_count, 4u); ++i) {
+    out << "\n point ";
+    print(manifold.points[i].anchor_a);
+    out << " separation " << manifold.points[i].separation << " feature " << std::hex
+        << manifold.points[i].feature << std::dec;
+  }
+  return out.str();
 }
 
 /// A pair, its manifold, and what has been found wrong with it.
@@ -142,8 +166,13 @@ static std::vector<float> separations(const Manifold<3>& manifold) {
   return values;
 }
 
-/// The deepest of both must be as deep, and points that one has and the other has not may only be
-/// those which both shapes could have chosen otherwise: of the same normal all must be equal.
+static bool has_value(const std::vector<float>& values, float wanted, double tolerance) {
+  return std::any_of(values.begin(), values.end(),
+                     [&](float value) { return std::abs(value - wanted) <= tolerance; });
+}
+
+/// As deep in both orders, and where the normal is the same, the same separations; how often each
+/// occurs may differ, since points that coincide are not told from one point.
 static void check_swapped(Case& c, const solver::Polyhedra& polyhedra) {
   const Pair& pair = c.pair;
   const Manifold<3> swapped = solver::collide(pair.b->shape, pair.pose_b, pair.a->shape,
@@ -162,13 +191,12 @@ static void check_swapped(Case& c, const solver::Polyhedra& polyhedra) {
     c.complain("swapped: other depth", here[0], there[0]);
   const Vector turned_by = to_double(c.manifold.normal) + to_double(swapped.normal);
   if (length(turned_by) > 1e-4) return;
-  for (std::size_t i = 0; i < std::max(here.size(), there.size()); ++i) {
-    const float one = i < here.size() ? here[i] : pair.margin;
-    const float other = i < there.size() ? there[i] : pair.margin;
-    if (std::abs(one - other) <= c.tolerance) continue;
-    c.complain("swapped: other separations", here.size(), there.size(), one, other);
-    return;
-  }
+  for (const auto& [values, others] : {std::pair(here, there), std::pair(there, here)})
+    for (const float value : values)
+      if (value < at_margin && !has_value(others, value, c.tolerance)) {
+        c.complain("swapped: other separations", here.size(), there.size(), value);
+        return;
+      }
 }
 
 static Vec<3> moved(const Vec<3>& position) {
@@ -208,15 +236,16 @@ static void check_moved(Case& c, const solver::Polyhedra& polyhedra) {
     c.complain("moved: other depth", least, values[0]);
 }
 
-std::vector<Complaint> complaints_about(const Pair& pair, const solver::Polyhedra& polyhedra,
-                                        const Tolerance& tolerance) {
+Verdict verdict_on(const Pair& pair, const solver::Polyhedra& polyhedra,
+                   const Tolerance& tolerance) {
   const PlacedPair bodies = place(pair);
+  const Truth truth = truth_of(pair, bodies);
   Case c{pair,
          bodies,
-         truth_of(pair, bodies),
+         truth,
          solver::collide(pair.a->shape, pair.pose_a, pair.b->shape, pair.pose_b, pair.margin,
                          polyhedra),
-         tolerance.of(pair),
+         tolerance.of(pair, truth.gap.value),
          {}};
   const bool has_points = check_form(c);
   if (has_points) {
@@ -228,7 +257,8 @@ std::vector<Complaint> complaints_about(const Pair& pair, const solver::Polyhedr
     check_swapped(c, polyhedra);
     check_moved(c, polyhedra);
   }
-  return c.complaints;
+  for (Complaint& complaint : c.complaints) complaint.numbers += describe(c.manifold);
+  return {truth.gap.value, c.complaints};
 }
 
 }  // namespace cycloid::oracle

@@ -13,19 +13,23 @@ struct Complaint {
   std::string numbers;
 };
 
-/// How far a manifold may be from the truth, m per m of the pair's scale.
+/// How far a manifold may be from the truth.
 struct Tolerance {
-  double exact = 1e-4;  ///< Rounding, and the 2^-13 m grid of nothing: floats of up to 5 m.
-  /// By which an axis of a face is taken rather than a better one of two edges, and the axis of
-  /// the first shape rather than the second's.
-  double preference = 3e-3;
+  double rounding = 1e-5;   ///< m per m of the pair's scale.
+  double reduction = 1e-4;  ///< m that `reduce` takes for no difference of depth.
+  /// By which an axis of a face is taken rather than a better one of two edges, and an axis of the
+  /// first shape rather than of the second: m, and per m of depth.
+  double preference = 2.5e-3;
+  double preference_of_depth = 0.025;
 
-  /// For this pair, m.
-  double of(const Pair& pair) const {
-    const bool edges = pair.a->kind != Kind::kHalfSpace && pair.b->kind != Kind::kHalfSpace &&
-                       !is_round(pair.a->kind) && !is_round(pair.b->kind);
-    return (exact + (edges ? preference : 0.0)) * pair.scale();
-  }
+  /// For a pair whose true gap is this, m.
+  double of(const Pair& pair, double gap) const;
+};
+
+/// What the oracle says about one manifold.
+struct Verdict {
+  double gap = 0.0;  ///< True, m.
+  std::vector<Complaint> complaints;
 };
 
 /// All that `solver::collide` promises about the pair, in both orders and 1024 m away:
@@ -40,7 +44,7 @@ struct Tolerance {
 /// - along the normal the bodies overlap no deeper than they must;
 /// - a triangle pushes only to its free side. What lies mostly behind it, or gets out of it
 ///   sooner to the back, has no separation to be compared with.
-std::vector<Complaint> complaints_about(const Pair& pair, const solver::Polyhedra& polyhedra,
-                                        const Tolerance& tolerance);
+Verdict verdict_on(const Pair& pair, const solver::Polyhedra& polyhedra,
+                   const Tolerance& tolerance);
 
 }  // namespace cycloid::oracle

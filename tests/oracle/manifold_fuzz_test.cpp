@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <iostream>
 #include <map>
 #include <sstream>
@@ -11,6 +12,8 @@ namespace cycloid::oracle {
 /// What became of the pairs of two kinds.
 struct Tally {
   int pairs = 0;
+  int overlapping = 0;
+  int near = 0;  ///< Closer than the margin, without overlap.
   int failed = 0;
 };
 
@@ -35,9 +38,18 @@ class Fuzz {
 
   void print(std::ostream& out) const {
     for (const auto& [kinds, tally] : tallies_)
-      out << kinds << ": " << tally.pairs << " pairs, " << tally.failed << " failed\n";
+      out << kinds << ": " << tally.pairs << " pairs, " << tally.overlapping << " overlapping, "
+          << tally.near << " near, " << tally.failed << " failed\n";
     for (const auto& [what, count] : complaints_) out << what << ": " << count << "\n";
     for (const auto& [what, count] : refused_) out << "refused " << what << ": " << count << "\n";
+  }
+
+  /// The fewest pairs of two kinds that overlap, or are near.
+  int fewest() const {
+    int fewest = pairs_;
+    for (const auto& [kinds, tally] : tallies_)
+      fewest = std::min({fewest, tally.overlapping, tally.near});
+    return fewest;
   }
 
   int pairs() const { return pairs_; }
@@ -60,14 +72,15 @@ class Fuzz {
     const std::string kinds =
         std::string(name_of(pair.a->kind)) + " against " + name_of(pair.b->kind);
     Tally& tally = tallies_[kinds];
-    const std::vector<Complaint> complaints =
-        complaints_about(pair, collection.world.state().polyhedra, {});
+    const Verdict verdict = verdict_on(pair, collection.world.state().polyhedra, {});
     ++pairs_;
     ++tally.pairs;
-    if (complaints.empty()) return;
+    if (verdict.gap < 0.0) ++tally.overlapping;
+    if (verdict.gap >= 0.0 && verdict.gap < pair.margin) ++tally.near;
+    if (verdict.complaints.empty()) return;
     ++failed_;
     ++tally.failed;
-    for (const Complaint& complaint : complaints) {
+    for (const Complaint& complaint : verdict.complaints) {
       if (++complaints_[kinds + ": " + complaint.what] > kExamplesMax) continue;
       ADD_FAILURE() << complaint.what << ": " << complaint.numbers << "\n seed " << seed << " pair "
                     << index << " margin " << pair.margin << "\n a " << describe(*pair.a) << "\n   "
@@ -89,6 +102,7 @@ TEST(ManifoldFuzz, AgreesWithTheOracleOnAHundredThousandPairs) {
   fuzz.print(std::cout);
   EXPECT_GE(fuzz.pairs(), 100'000);
   EXPECT_EQ(fuzz.kinds(), static_cast<std::size_t>(kKinds * kKinds - 4));
+  EXPECT_GE(fuzz.fewest(), 200);
   EXPECT_EQ(fuzz.refused(), 0u) << "some shapes were not created";
   EXPECT_EQ(fuzz.failed(), 0);
 }
