@@ -4,12 +4,13 @@
 
 namespace cycloid::solver {
 
-/// A convex face of n corners cut by m planes has at most n + m.
-static constexpr std::size_t kClipMax = 2 * kHullVerticesMax;
 /// In place of a clip edge: the point is a corner of the incident face.
 static constexpr std::uint32_t kCorner = 0x3ffu;
 /// Marks an edge of the reference face where one of the incident face is meant.
 static constexpr std::uint32_t kCut = 0x200u;
+
+/// The feature of the one point of solids apart whose nearest features are not an axis' own.
+static constexpr std::uint32_t kNearest = 0x60000000u;
 
 struct ClipVertex {
   Vec<3> at;
@@ -102,7 +103,7 @@ FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_
           on_b,      separation};
 }
 
-float clip_faces(const FacePair& pair, const Vec<3>& a_to_b, float margin, Manifold<3>& manifold) {
+void clip_faces(const FacePair& pair, float margin, Clipped& clipped) {
   const Solid& reference = pair.reference;
   const Vec<3> normal = reference.normals[pair.reference_face];
   Polygon buffers[2];
@@ -125,20 +126,17 @@ float clip_faces(const FacePair& pair, const Vec<3>& a_to_b, float margin, Manif
     edge = next;
   } while (edge != first);
 
-  std::array<Candidate, kClipMax> found;
-  std::size_t count = 0;
-  float lowest = 1.0e30f;
+  clipped.count = 0;
+  clipped.lowest = 1.0e30f;
   const std::uint32_t face = clip_feature(pair.on_b, pair.reference_face, 0, 0);
   for (std::size_t i = 0; i < polygon->count; ++i) {
     const ClipVertex& vertex = polygon->vertices[i];
     const float separation = dot(normal, vertex.at - origin);
-    lowest = min(lowest, separation);
+    clipped.lowest = min(clipped.lowest, separation);
     if (separation > margin) continue;
-    found[count++] = {vertex.at - (0.5f * separation) * normal, separation, face | vertex.feature};
+    clipped.candidates[clipped.count++] = {vertex.at - (0.5f * separation) * normal, separation,
+                                           face | vertex.feature};
   }
-  manifold.normal = pair.on_b ? -normal : normal;
-  reduce(std::span(found).first(count), a_to_b, manifold);
-  return lowest;
 }
 
 NearestPoints nearest_points(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0,
@@ -176,39 +174,39 @@ static float gap(const Solid& a, const Solid& b, const Vec<3>& normal) {
   return lowest - highest;
 }
 
-/// One point between p on a and q on b, with the axis on which the solids are farthest apart: the
-/// line between them, or the one already known. No point where they are farther than the margin.
-static Manifold<3> touch_between(const EdgePair& known, const NearestPoints& points,
-                                 const Vec<3>& a_to_b, float margin) {
-  const Vec<3> between = points.q - points.p;
-  const float distance = length(between);
-  if (distance > margin) return {};
+/// An axis from a to b, unit, and how far the solids are apart along it, m.
+struct Separation {
+  Vec<3> normal;
+  float separation;
+};
+
+/// Takes the line between two points of a and b as the axis where that is better.
+/// @return the line's direction; the axis' where the points are too near to tell.
+static Vec<3> improve(const Solid& a, const Solid& b, const NearestPoints& points,
+                      Separation& axis) {
+  const Vec<3> direction = normalized_or(points.q - points.p, axis.normal);
+  const float apart = gap(a, b, direction);
+  if (apart > axis.separation) axis = {direction, apart};
+  return direction;
+}
+
+/// One point between p on a and q on b; none where they are farther apart than the margin.
+static Manifold<3> touch_between(const Separation& axis, const NearestPoints& points,
+                                 std::uint32_t feature, const Vec<3>& a_to_b, float margin) {
   Manifold<3> manifold;
-  manifold.normal = known.normal;
-  float separation = known.separation;
-  if (distance > 1.0e-6f) {
-    const Vec<3> direction = (1.0f / distance) * between;
-    const float apart = gap(known.a, known.b, direction);
-    if (apart > separation) {
-      manifold.normal = direction;
-      separation = apart;
-    }
-  }
-  add_point(points.p + 0.5f * between, separation, edge_feature(known.edge_a, known.edge_b), a_to_b,
-            manifold);
+  if (length(points.q - points.p) > margin) return manifold;
+  manifold.normal = axis.normal;
+  add_point(0.5f * (points.p + points.q), axis.separation, feature, a_to_b, manifold);
   return manifold;
 }
 
-/// Between the nearest edges of the two faces.
-static Manifold<3> touch_borders(const FacePair& pair, const Vec<3>& a_to_b, float margin) {
-  const Solid& a = pair.on_b ? pair.incident : pair.reference;
-  const Solid& b = pair.on_b ? pair.reference : pair.incident;
-  const std::uint32_t first_a = a.faces[pair.on_b ? pair.incident_face : pair.reference_face].edge;
-  const std::uint32_t first_b = b.faces[pair.on_b ? pair.reference_face : pair.incident_face].edge;
-  const Vec<3> normal = pair.reference.normals[pair.reference_face];
-  EdgePair nearest = {a, b, first_a, first_b, pair.on_b ? -normal : normal, pair.separation};
-  NearestPoints points = {Vec<3>::zero(), Vec<3>::zero()};
+/// The nearest points on the borders of a face of a and a face of b.
+static NearestPoints nearest_borders(const Solid& a, std::uint32_t face_a, const Solid& b,
+                                     std::uint32_t face_b) {
+  NearestPoints nearest = {Vec<3>::zero(), Vec<3>::zero()};
   float least = 1.0e30f;
+  const std::uint32_t first_a = a.faces[face_a].edge;
+  const std::uint32_t first_b = b.faces[face_b].edge;
   std::uint32_t i = first_a;
   do {
     const Vec<3> p0 = a.vertices[a.edges[i].origin];
@@ -221,43 +219,68 @@ static Manifold<3> touch_borders(const FacePair& pair, const Vec<3>& a_to_b, flo
       const float squared = dot(between, between);
       if (squared < least) {
         least = squared;
-        points = here;
-        nearest.edge_a = i;
-        nearest.edge_b = j;
+        nearest = here;
       }
       j = b.edges[j].next;
     } while (j != first_b);
     i = a.edges[i].next;
   } while (i != first_a);
-  return touch_between(nearest, points, a_to_b, margin);
+  return nearest;
+}
+
+/// Of solids apart: between the nearest points of the borders of the two faces, or where the gap
+/// along the line between these shows that others are nearer, of the faces that look along it.
+static Manifold<3> touch_borders(const FacePair& pair, const Vec<3>& a_to_b, float margin) {
+  const Solid& a = pair.on_b ? pair.incident : pair.reference;
+  const Solid& b = pair.on_b ? pair.reference : pair.incident;
+  std::uint32_t face_a = pair.on_b ? pair.incident_face : pair.reference_face;
+  std::uint32_t face_b = pair.on_b ? pair.reference_face : pair.incident_face;
+  const Vec<3> normal = pair.reference.normals[pair.reference_face];
+  Separation best = {pair.on_b ? -normal : normal, pair.separation};
+  NearestPoints points = {Vec<3>::zero(), Vec<3>::zero()};
+  float least = 1.0e30f;
+  for (int round = 0; round < 3; ++round) {
+    const NearestPoints here = nearest_borders(a, face_a, b, face_b);
+    const float distance = length(here.q - here.p);
+    if (distance >= least) break;
+    least = distance;
+    points = here;
+    const Vec<3> direction = improve(a, b, here, best);
+    if (distance <= best.separation + 1.0e-4f) break;
+    face_a = opposed_face(a, -direction);
+    face_b = opposed_face(b, direction);
+  }
+  return touch_between(best, points, kNearest, a_to_b, margin);
 }
 
 /// The corner of the other solid that is deepest below the reference face.
-static Manifold<3> touch_corner(const FacePair& pair, const Vec<3>& a_to_b) {
+static Candidate deepest_corner(const FacePair& pair) {
   const Vec<3> normal = pair.reference.normals[pair.reference_face];
   std::uint32_t deepest = 0;
-  float lowest = 1.0e30f;
-  for (std::uint32_t i = 0; i < pair.incident.vertex_count; ++i) {
+  float lowest = dot(normal, pair.incident.vertices[0]);
+  for (std::uint32_t i = 1; i < pair.incident.vertex_count; ++i) {
     const float height = dot(normal, pair.incident.vertices[i]);
     if (height >= lowest) continue;
     lowest = height;
     deepest = i;
   }
-  Manifold<3> manifold;
-  manifold.normal = pair.on_b ? -normal : normal;
-  add_point(pair.incident.vertices[deepest] - (0.5f * pair.separation) * normal, pair.separation,
-            clip_feature(pair.on_b, pair.reference_face, deepest, kCorner), a_to_b, manifold);
-  return manifold;
+  return {pair.incident.vertices[deepest] - (0.5f * pair.separation) * normal, pair.separation,
+          clip_feature(pair.on_b, pair.reference_face, deepest, kCorner)};
 }
 
 Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, const Vec<3>& a_to_b,
                         float margin) {
+  Clipped clipped;
+  clip_faces(pair, margin, clipped);
+  if (clipped.lowest > pair.separation + tolerance.edge) {
+    if (pair.separation > 0.0f) return touch_borders(pair, a_to_b, margin);
+    clipped.candidates[clipped.count++] = deepest_corner(pair);
+  }
   Manifold<3> manifold;
-  const float lowest = clip_faces(pair, a_to_b, margin, manifold);
-  if (pair.separation <= 0.0f)
-    return manifold.point_count > 0 ? manifold : touch_corner(pair, a_to_b);
-  if (lowest <= tolerance.edge + pair.separation) return manifold;
-  return touch_borders(pair, a_to_b, margin);
+  const Vec<3> normal = pair.reference.normals[pair.reference_face];
+  manifold.normal = pair.on_b ? -normal : normal;
+  reduce(std::span(clipped.candidates).first(clipped.count), a_to_b, manifold);
+  return manifold;
 }
 
 Manifold<3> touch_edges(const EdgePair& pair, const Vec<3>& a_to_b, float margin) {
@@ -266,12 +289,12 @@ Manifold<3> touch_edges(const EdgePair& pair, const Vec<3>& a_to_b, float margin
   const NearestPoints points =
       nearest_points(a.vertices[a.edges[pair.edge_a].origin], a.vertices[end_of(a, pair.edge_a)],
                      b.vertices[b.edges[pair.edge_b].origin], b.vertices[end_of(b, pair.edge_b)]);
-  if (pair.separation > 0.0f) return touch_between(pair, points, a_to_b, margin);
-  Manifold<3> manifold;
-  manifold.normal = pair.normal;
-  add_point(0.5f * (points.p + points.q), pair.separation, edge_feature(pair.edge_a, pair.edge_b),
-            a_to_b, manifold);
-  return manifold;
+  Separation axis = {pair.normal, pair.separation};
+  if (pair.separation <= 0.0f)
+    margin = 1.0e30f;  // Of overlapping ones the ends may be far apart.
+  else
+    improve(a, b, points, axis);
+  return touch_between(axis, points, edge_feature(pair.edge_a, pair.edge_b), a_to_b, margin);
 }
 
 }  // namespace cycloid::solver

@@ -60,15 +60,25 @@ struct NearestPoints {
 NearestPoints nearest_points(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0,
                              const Vec<3>& q1);
 
-/// Cuts the incident face by the planes through the reference face's edges, and keeps what is no
-/// farther than `margin` along the normal; sets the normal. Corners that stick out by less than
-/// 0.5 mm (and less than a hundredth of the edge) count as inside, so that flush boxes keep their
-/// corners. Source: Sutherland and Hodgman (1974).
-/// @return the separation [m] of the nearest point of the cut face, margin or not; 1e30 if empty.
-float clip_faces(const FacePair& pair, const Vec<3>& a_to_b, float margin, Manifold<3>& manifold);
+/// A convex face of n corners cut by m planes has at most n + m.
+inline constexpr std::size_t kClipMax = 2 * kHullVerticesMax;
 
-/// The manifold of a face: clipped, or where the nearest features are not under the face, one point
-/// between them. Its separation exceeds the true distance by no more than the tolerance of edges.
+struct Clipped {
+  std::array<Candidate, kClipMax + 1> candidates;  ///< And room for one more.
+  std::size_t count;
+  float lowest;  ///< Separation of the nearest point, within the margin or not; 1e30: none, m.
+};
+
+/// Cuts the incident face by the planes through the reference face's edges, and keeps what is no
+/// farther than `margin` along the normal. Corners that stick out by less than 0.5 mm (and less
+/// than a hundredth of the edge) count as inside, so that flush boxes keep their corners.
+/// Source: Sutherland and Hodgman (1974).
+void clip_faces(const FacePair& pair, float margin, Clipped& clipped);
+
+/// The manifold of a face: what is clipped. Where the solids overlap and that is not as deep as
+/// they are, also the other's deepest corner; where they are apart and the nearest features are not
+/// under the face, one point between those instead. Of solids apart, no separation exceeds their
+/// distance by more than the tolerance of edges.
 Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, const Vec<3>& a_to_b,
                         float margin);
 
