@@ -1,4 +1,4 @@
-#include "solver/collision/solid.hpp"
+#include "solver/collision/rod.hpp"
 
 namespace cycloid::solver {
 
@@ -22,7 +22,7 @@ Manifold<3> half_space_against_rod(const Vec<3>& normal, float offset, const Rod
   Manifold<3> manifold;
   manifold.normal = normal;
   const Vec<3> ends[2] = {rod.from, rod.to};
-  for (std::uint32_t i = 0; i < 2; ++i) {
+  for (std::uint32_t i = 0; i < (is_ball(rod) ? 1u : 2u); ++i) {
     const float separation = dot(normal, ends[i]) - offset - rod.radius;
     if (separation > margin) continue;
     add_point(ends[i] - (rod.radius + 0.5f * separation) * normal, separation, i, a_to_b, manifold);
