@@ -16,17 +16,23 @@ static std::size_t deepest_of(std::span<const Candidate> candidates) {
   return i;
 }
 
-/// The candidate with the largest positive measure, or `none` where no measure exceeds `least`.
+/// The candidate with the largest measure, of equals the deepest and then the first; none, that is
+/// their number, where no measure exceeds `least`.
 template <class Measure>
-static std::size_t largest_of(std::size_t count, std::size_t none, float least,
+static std::size_t largest_of(std::span<const Candidate> candidates, float least,
                               const Measure& measure) {
+  const std::size_t none = candidates.size();
   std::size_t best = none;
-  float threshold = least;
-  for (std::size_t i = 0; i < count; ++i) {
-    const float value = measure(i);
-    if (value <= threshold) continue;
+  float largest = least;
+  for (std::size_t i = 0; i < candidates.size(); ++i) {
+    const float value = measure(candidates[i].at);
+    if (value <= least) continue;
+    const bool larger = value > kMeasureTolerance * largest;
+    const bool deeper = best != none && value * kMeasureTolerance >= largest &&
+                        candidates[i].separation < candidates[best].separation - kDepthTolerance;
+    if (best != none && !larger && !deeper) continue;
     best = i;
-    threshold = kMeasureTolerance * value;
+    largest = value;
   }
   return best;
 }
@@ -45,25 +51,27 @@ static Choice choose(std::span<const Candidate> candidates, const Vec<3>& normal
   const std::size_t first = deepest_of(candidates);
   choice.add(first);
   const Vec<3> p = candidates[first].at;
-  const std::size_t second = largest_of(none, none, 0.0f, [&](std::size_t i) {
-    const Vec<3> arm = candidates[i].at - p;
-    return dot(arm, arm);
-  });
+  // Measured in the plane of the contact, in which the far side of a small box is not far.
+  const auto squared_from = [&](const Vec<3>& from) {
+    return [&normal, from](const Vec<3>& at) {
+      const Vec<3> arm = cross(normal, at - from);
+      return dot(arm, arm);
+    };
+  };
+  const std::size_t second = largest_of(candidates, 0.0f, squared_from(p));
   if (second == none) return choice;
   choice.add(second);
   const Vec<3> q = candidates[second].at;
   const Vec<3> base = q - p;
   const Vec<3> across = cross(normal, base);
   // A triangle flatter than this part of its base squared is a line.
-  const float flat = 1.0e-5f * dot(base, base);
-  const std::size_t third = largest_of(
-      none, none, flat, [&](std::size_t i) { return abs(dot(across, candidates[i].at - p)); });
+  const float flat = 1.0e-5f * dot(across, across);
+  const std::size_t third =
+      largest_of(candidates, flat, [&](const Vec<3>& at) { return abs(dot(across, at - p)); });
   if (third == none) {
     // All lie on a line: the deepest may lie within it, so keep its other end.
-    const std::size_t end = largest_of(none, none, dot(base, base), [&](std::size_t i) {
-      const Vec<3> arm = candidates[i].at - q;
-      return dot(arm, arm);
-    });
+    const float least = kMeasureTolerance * dot(across, across);
+    const std::size_t end = largest_of(candidates, least, squared_from(q));
     if (end != none) choice.add(end);
     return choice;
   }
@@ -72,8 +80,7 @@ static Choice choose(std::span<const Candidate> candidates, const Vec<3>& normal
   const float side = dot(across, r - p) < 0.0f ? -1.0f : 1.0f;
   const Vec<3> outward[3] = {-side * across, -side * cross(normal, r - q),
                              -side * cross(normal, p - r)};
-  const std::size_t fourth = largest_of(none, none, flat, [&](std::size_t i) {
-    const Vec<3> at = candidates[i].at;
+  const std::size_t fourth = largest_of(candidates, flat, [&](const Vec<3>& at) {
     return max(dot(outward[0], at - p), max(dot(outward[1], at - q), dot(outward[2], at - r)));
   });
   if (fourth != none) choice.add(fourth);

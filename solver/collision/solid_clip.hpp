@@ -44,6 +44,11 @@ struct EdgePair {
   float separation;  ///< Of the solids along it, m.
 };
 
+/// The corner to which a half-edge leads.
+inline std::uint32_t end_of(const Solid& solid, std::uint32_t edge) {
+  return solid.edges[solid.edges[edge].twin].origin;
+}
+
 /// The face whose normal is most opposed to `normal`; of those within 1e-3 the lowest.
 std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal);
 
@@ -59,6 +64,9 @@ struct NearestPoints {
 };
 NearestPoints nearest_points(const Vec<3>& p0, const Vec<3>& p1, const Vec<3>& q0,
                              const Vec<3>& q1);
+
+/// In place of a clip edge: the point is a corner of the incident solid, in place of its edge.
+inline constexpr std::uint32_t kCorner = 0x3ffu;
 
 /// A convex face of n corners cut by m planes has at most n + m.
 inline constexpr std::size_t kClipMax = 2 * kHullVerticesMax;
