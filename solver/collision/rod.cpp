@@ -84,7 +84,9 @@ Vec<3> normal_between(const Rod& a, const Rod& b, const SegmentPair& pair) {
     const Vec<3> axis = cross(d1, d2);
     // normalized_or takes very short vectors for none.
     const Vec<3> normal = normalized_or((1.0f / max(dot(d1, d1), dot(d2, d2))) * axis, axis);
-    return dot(normal, apart ? between : middles) < 0.0f ? -normal : normal;
+    float along = dot(normal, apart ? between : middles);
+    if (!apart && abs(along) <= 1.0e-6f * size) along = normal[1];
+    return along < 0.0f ? -normal : normal;
   }
   if (apart) return (1.0f / pair.distance) * between;
   const bool inside_a = pair.fraction_a > 0.0f && pair.fraction_a < 1.0f;

@@ -14,6 +14,9 @@ inline Vec<3> point_on(const Rod& rod, float fraction) {
   return rod.from + fraction * (rod.to - rod.from);
 }
 
+/// What is within this cosine of lying flat on a face is met along the face's normal.
+inline constexpr float kLiesFlat = 0.9998f;
+
 /// The nearest points of two segments.
 struct SegmentPair {
   Vec<3> on_a;
@@ -35,7 +38,7 @@ SegmentPair nearest_points(const Vec<3>& a_from, const Vec<3>& a_to, const Vec<3
 /// The unit normal from a to b at their nearest points: the line between these; where the segments
 /// cross the normal of both, so that it does not depend on a small distance; where they touch one
 /// across the segment that is met inside, towards the other's middle, and where that has no
-/// direction either, upwards (axis 1) as far as the segment allows.
+/// direction either, upwards (axis 1) as far as the segments allow.
 Vec<3> normal_between(const Rod& a, const Rod& b, const SegmentPair& pair);
 
 /// One point of each axis, and how far apart they are along a manifold's normal, m.

@@ -110,11 +110,17 @@ static Nearest nearest_outside(const Solid& solid, const Rod& rod, const Survey&
   return nearest;
 }
 
-/// Of two faces that meet in an edge the one that looks more along `normal`.
-static std::uint32_t face_along(const Solid& solid, std::uint32_t edge, const Vec<3>& normal) {
-  const std::uint32_t left = solid.edges[edge].face;
-  const std::uint32_t right = solid.edges[edge + 1].face;
-  return dot(solid.normals[right], normal) > dot(solid.normals[left], normal) ? right : left;
+/// Of the faces that meet at the nearest point the one that looks most along `normal`.
+static std::uint32_t face_along(const Solid& solid, const Nearest& nearest, const Vec<3>& normal) {
+  std::uint32_t best = solid.edges[nearest.edge].face;
+  const std::uint32_t right = solid.edges[nearest.edge + 1].face;
+  if (dot(solid.normals[right], normal) > dot(solid.normals[best], normal)) best = right;
+  const float fraction = nearest.pair.fraction_a;
+  if (fraction > 0.0f && fraction < 1.0f) return best;
+  // At a corner: of all faces, since the one that looks along it is one of the corner's.
+  for (std::uint32_t f = 0; f < solid.face_count; ++f)
+    if (dot(solid.normals[f], normal) > dot(solid.normals[best], normal)) best = f;
+  return best;
 }
 
 static float lowest(const Solid& solid, std::uint32_t face, const Rod& rod, const Span& span) {
@@ -126,25 +132,24 @@ static float lowest(const Solid& solid, std::uint32_t face, const Rod& rod, cons
 static Manifold<3> outside(const Solid& solid, const Rod& rod, const Nearest& nearest,
                            const Vec<3>& a_to_b, float margin) {
   Manifold<3> manifold;
-  std::uint32_t face = nearest.face;
-  if (face == kNone) {
-    manifold.normal = normal_between(edge_rod(solid, nearest.edge), rod, nearest.pair);
-    face = face_along(solid, nearest.edge, manifold.normal);
-  }
-  // A rod that lies on a face and sticks out over its edge is nearest to the edge, by a rounding.
   const float slack = rounding_of(solid, rod);
+  if (nearest.face != kNone) {
+    manifold.normal = solid.normals[nearest.face];
+    const Span span = clip_to_face(solid, nearest.face, rod, slack);
+    add_span(solid, nearest.face, rod, span, a_to_b, margin, manifold);
+    return manifold;
+  }
+  const Vec<3> normal = normal_between(edge_rod(solid, nearest.edge), rod, nearest.pair);
+  const std::uint32_t face = face_along(solid, nearest, normal);
   const Span span = clip_to_face(solid, face, rod, slack);
-  if (span.from <= span.to &&
-      lowest(solid, face, rod, span) <= nearest.distance + 2.0e-4f * rod.radius + slack) {
+  // A rod that lies on a face and sticks out over its edge is nearest to the edge, by a rounding.
+  if (span.from <= span.to && dot(normal, solid.normals[face]) > kLiesFlat &&
+      lowest(solid, face, rod, span) <= nearest.distance + 1.0e-4f * rod.radius + slack) {
     manifold.normal = solid.normals[face];
     add_span(solid, face, rod, span, a_to_b, margin, manifold);
     if (manifold.point_count > 0) return manifold;
   }
-  if (nearest.face != kNone) {
-    add_span(solid, face, rod, {0.0f, 1.0f}, a_to_b, margin, manifold);
-    return manifold;
-  }
-  manifold.normal = normal_between(edge_rod(solid, nearest.edge), rod, nearest.pair);
+  manifold.normal = normal;
   add_edge_points(solid, nearest.edge, rod, nearest.pair, a_to_b, margin, manifold);
   return manifold;
 }
@@ -164,7 +169,13 @@ static Manifold<3> inside(const Solid& solid, const Rod& rod, const Survey& surv
   }
   manifold.normal = solid.normals[survey.face];
   Span span = clip_to_face(solid, survey.face, rod, slack);
-  if (span.from > span.to) span = {0.0f, 1.0f};
+  // The lowest end lies over the face, but for what the two kinds of axes differ by.
+  if (span.from > span.to) {
+    span = {0.0f, 1.0f};
+  } else if (lowest(solid, survey.face, rod, span) > survey.face_separation + slack) {
+    const bool rises = dot(manifold.normal, rod.to - rod.from) > 0.0f;
+    (rises ? span.from : span.to) = rises ? 0.0f : 1.0f;
+  }
   add_span(solid, survey.face, rod, span, a_to_b, margin, manifold);
   return manifold;
 }

@@ -60,9 +60,9 @@ Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Ve
   const Leaning leaning = leaning_of(triangle, edges_of(nearest), normal);
   // A rod across an edge where the surface goes on flat is over both triangles; so is, by a
   // rounding, one that lies on the triangle and sticks out over its edge.
-  const bool along_own =
-      low <= nearest.pair.distance + 2.0e-4f * rod.radius || leaning == Leaning::kOwnOnly;
-  if (over && along_own) {
+  const bool lies_flat = dot(normal, triangle.normals[0]) > kLiesFlat &&
+                         low <= nearest.pair.distance + 1.0e-4f * rod.radius;
+  if (over && (lies_flat || leaning == Leaning::kOwnOnly)) {
     add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
     return manifold;
   }

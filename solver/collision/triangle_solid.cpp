@@ -12,10 +12,8 @@ struct Contacting {
   std::uint32_t face = 0;
   std::uint32_t triangle_edge = 0;
   std::uint32_t solid_edge = 0;
+  float refused = -3.0e38f;  ///< Separation along the best axis that is a neighbour's, m.
 };
-
-/// A solid within this cosine of lying flat on the triangle is met along the triangle's normal.
-static constexpr float kLiesFlat = 0.9998f;
 
 /// How much farther apart than the best so far an axis has to be to take its place, m, so that
 /// what rests does not change its axis from tick to tick.
@@ -30,11 +28,17 @@ static std::uint32_t farthest_corner(const Solid& triangle, const Vec<3>& direct
   return best;
 }
 
-/// Whether the surface allows a normal at an edge or corner of the triangle: on its free side and
-/// not beyond a neighbour's.
-static bool allows(const Solid& triangle, std::uint32_t edges, const Vec<3>& normal) {
-  return dot(normal, triangle.normals[0]) > 0.0f &&
-         leaning_of(triangle, edges, normal) == Leaning::kAllowed;
+/// Whether an axis may take the place of the best one. Where it is better, but beyond a convex
+/// neighbour's normal or behind the triangle, notes that: others have to make the contact.
+static bool takes_over(const Solid& triangle, std::uint32_t edges, const Vec<3>& normal,
+                       float separation, Contacting& best) {
+  const float along = dot(normal, triangle.normals[0]);
+  if (along > kLiesFlat) return false;
+  const Leaning leaning = leaning_of(triangle, edges, normal);
+  if (leaning == Leaning::kOwnOnly) return false;
+  if (leaning == Leaning::kAllowed && along >= -kFlat) return true;
+  best.refused = max(best.refused, separation);
+  return false;
 }
 
 /// False where a face of the solid separates by more than the margin.
@@ -48,8 +52,7 @@ static bool survey_faces(const Solid& triangle, const Solid& solid, float margin
     const float separation = dot(normal, on_face - triangle.vertices[corner]);
     if (separation > margin) return false;
     if (separation <= best.separation + preferred) continue;
-    if (dot(normal, triangle.normals[0]) > kLiesFlat) continue;
-    if (!allows(triangle, edges_at(corner), normal)) continue;
+    if (!takes_over(triangle, edges_at(corner), normal, separation, best)) continue;
     best.kind = Contacting::kSolidFace;
     best.normal = normal;
     best.separation = separation;
@@ -87,7 +90,7 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
       if (separation > margin) return false;
       if (separation <= best.separation + preferred) continue;
       const Vec<3> normal = scale * axis;
-      if (dot(normal, own) > kLiesFlat || !allows(triangle, 1u << i, normal)) continue;
+      if (!takes_over(triangle, 1u << i, normal, separation, best)) continue;
       best.kind = Contacting::kEdges;
       best.normal = normal;
       best.separation = separation;
@@ -99,7 +102,7 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
 }
 
 /// The corners of a clipped polygon as points against a face that looks along `normal`. The
-/// polygon is of the other shape; `towards` is 1 where that is b, else -1.
+/// polygon is of the other shape.
 static void add_polygon(const Polygon& polygon, const Vec<3>& normal, const Vec<3>& on_face,
                         std::uint32_t face, bool on_b, const Vec<3>& a_to_b, float margin,
                         Manifold<3>& manifold) {
@@ -157,6 +160,15 @@ static void add_contact(const Solid& triangle, const Solid& solid, const Contact
   }
 }
 
+/// Whether the triangle's own normal would push a solid far out over an edge that it only grazes
+/// from beside: a box against a step does not jump onto it. Where the surface is fine and round,
+/// both ways are about as long, and the own normal is right.
+static bool is_another_s(const Contacting& best, float preferred) {
+  if (best.kind != Contacting::kOwnFace || best.refused <= best.separation + preferred)
+    return false;
+  return -best.separation > 4.0f * max(-best.refused, 0.0f) + preferred;
+}
+
 /// A solid is met from the free side, by a rule without memory: its centre must not lie behind the
 /// triangle's plane, so what is pushed out is sunk by less than half of its extent.
 Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, const Vec<3>& a_to_b,
@@ -171,6 +183,7 @@ Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, co
   if (best.separation > margin) return {};
   if (!survey_faces(triangle, solid, margin, best)) return {};
   if (!survey_edges(triangle, solid, margin, best)) return {};
+  if (is_another_s(best, preference(solid))) return {};
   Manifold<3> manifold;
   add_contact(triangle, solid, best, a_to_b, margin, manifold);
   return manifold;
