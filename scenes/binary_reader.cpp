@@ -48,6 +48,16 @@ class BinaryReader {
     to.normal = triple(from.normal());
     to.offset = from.offset();
     to.loop = from.loop();
+    to.half = triple(from.half());
+    // A file from before boxes has none: not turned, as in scene.hpp.
+    if (from.rotation() != nullptr) to.rotation = quadruple(from.rotation());
+    if (from.triangles() != nullptr && spend(from.triangles()->size() * sizeof(fb::Corners)))
+      for (const fb::Corners* corners : *from.triangles())
+        to.triangles.push_back({corners->a(), corners->b(), corners->c()});
+    if (from.heights() != nullptr && spend(from.heights()->size() * sizeof(float)))
+      to.heights.assign(from.heights()->begin(), from.heights()->end());
+    to.columns = from.columns();
+    to.cell = {from.cell_x(), from.cell_z()};
     to.density = from.density();
     to.material = text(from.material());
     if (const fb::Filter* filter = from.filter())

@@ -27,6 +27,14 @@ static std::unique_ptr<fb::ShapeT> packed(const SceneShape& from) {
   to->normal = triple(from.normal);
   to->offset = from.offset;
   to->loop = from.loop;
+  to->half = triple(from.half);
+  to->rotation = quadruple(from.rotation);
+  for (const std::array<std::uint32_t, 3>& corners : from.triangles)
+    to->triangles.emplace_back(corners[0], corners[1], corners[2]);
+  to->heights = from.heights;
+  to->columns = from.columns;
+  to->cell_x = from.cell[0];
+  to->cell_z = from.cell[1];
   to->density = from.density;
   to->material = from.material;
   to->filter =

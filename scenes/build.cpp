@@ -25,6 +25,17 @@ static void set_rotation(const SceneBody& from, solver::BodyDef<3>& to) {
   to.spin = vec<3>(from.spin);
 }
 
+static void set_solid(const SceneShape&, solver::ShapeDef<2>&) {}
+/// What only shapes of space have.
+static void set_solid(const SceneShape& from, solver::ShapeDef<3>& to) {
+  to.half = vec<3>(from.half);
+  for (int i = 0; i < 4; ++i) to.rotation[i] = from.rotation[static_cast<std::size_t>(i)];
+  to.triangles = from.triangles;
+  to.heights = from.heights;
+  to.columns = from.columns;
+  to.cell = from.cell;
+}
+
 static std::string at(const std::string& path, std::size_t i) {
   return path + "/" + std::to_string(i);
 }
@@ -50,7 +61,29 @@ static std::string reason_of(const Error& error) {
   if (field == "limit_enabled") return "is not possible here: this kind takes no limits";
   if (field == "motor") return "is not possible here: this kind takes no such motor";
   if (field == "kind") return "is not possible here";
+  if (field == "half") return "has to be positive and finite along every axis";
+  if (field == "triangles")
+    return "have to be three different points each, counted from 0, that span an area";
+  if (field == "columns") return "have to be 2 or more";
+  if (field == "heights") return "have to be finite, in two or more whole rows of columns";
+  if (field == "cell") return "has to be positive both ways";
   return "is out of range";
+}
+
+/// The same for an error about a body, whose shapes say what their points have to be.
+static std::string reason_of(const Error& error, const SceneBody& body) {
+  if (error.index < 0 || std::string_view(error.field) != "points") return reason_of(error);
+  switch (body.shapes[static_cast<std::size_t>(error.index)].kind) {
+    case solver::ShapeKind::kHull:
+      return "has to span a volume, with 4 to 256 points and at most 64 corners";
+    case solver::ShapeKind::kMesh:
+      return "has to be three finite points or more";
+    case solver::ShapeKind::kBox:
+    case solver::ShapeKind::kHeightField:
+      return "has to be one finite point, or none";
+    default:
+      return reason_of(error);
+  }
 }
 
 template <int D>
@@ -135,6 +168,7 @@ class Builder {
       def.normal = vec<D>(shape.normal);
       def.offset = shape.offset;
       def.loop = shape.loop;
+      set_solid(shape, def);
       def.density = shape.density;
       def.filter = shape.filter;
       def.material = material_index(shape.material);
@@ -161,7 +195,7 @@ class Builder {
     Prefab<D> def;
     if (!make_body(from, path, def)) return;
     const solver::Result<solver::BodyId> id = built_->world.create_body(def.body, def.shapes);
-    if (!id.ok()) return complain(body_path(path, id.error()), id.error());
+    if (!id.ok()) return complain(body_path(path, id.error()), reason_of(id.error(), from));
     if (from.name.empty()) return;
     if (!bodies_.emplace(from.name, id.value()).second)
       complain(path + "/name", "is the name of an earlier body: '" + from.name + "'");
@@ -271,7 +305,7 @@ class Builder {
     solver::Result<solver::World<D>> world = solver::World<D>::create(def);
     if (!world.ok()) return;  // Said already, of the scene's own world.
     const solver::Result<solver::BodyId> id = world.value().create_body(prefab.body, prefab.shapes);
-    if (!id.ok()) return complain(body_path(path, id.error()), id.error());
+    if (!id.ok()) return complain(body_path(path, id.error()), reason_of(id.error(), from));
     if (from.name.empty()) return complain(path + "/name", "has to be given: controls spawn by it");
     if (!prefabs_.emplace(from.name, built_->prefabs.size()).second)
       return complain(path + "/name", "is the name of an earlier prefab: '" + from.name + "'");

@@ -20,7 +20,11 @@ struct Names<solver::ShapeKind> {
       {"half_space", solver::ShapeKind::kHalfSpace},
       {"capsule", solver::ShapeKind::kCapsule},
       {"polygon", solver::ShapeKind::kPolygon},
-      {"chain", solver::ShapeKind::kChain}};
+      {"chain", solver::ShapeKind::kChain},
+      {"box", solver::ShapeKind::kBox},
+      {"hull", solver::ShapeKind::kHull},
+      {"mesh", solver::ShapeKind::kMesh},
+      {"height_field", solver::ShapeKind::kHeightField}};
 };
 template <>
 struct Names<solver::BodyKind> {
@@ -126,6 +130,12 @@ void fields(SceneShape& s, F&& f) {
   f("normal", s.normal);
   f("offset", s.offset);
   f("loop", s.loop);
+  f("half", s.half);
+  f("rotation", s.rotation);
+  f("triangles", s.triangles);
+  f("heights", s.heights);
+  f("columns", s.columns);
+  f("cell", s.cell);
   f("density", s.density);
   f("material", s.material);
   f("filter", s.filter);

@@ -123,6 +123,14 @@ class JsonReader {
       read(json[i], path + "/" + std::to_string(i), field[i]);
   }
 
+  /// Indices are given in full.
+  template <std::size_t N>
+  void read(const Json& json, const std::string& path, std::array<std::uint32_t, N>& field) {
+    if (!json.is_array() || json.size() != N)
+      return complain(path, "has to be an array of " + std::to_string(N) + " whole numbers");
+    for (std::size_t i = 0; i < N; ++i) read(json[i], path + "/" + std::to_string(i), field[i]);
+  }
+
   template <class Element>
   void read(const Json& json, const std::string& path, std::vector<Element>& field) {
     if (!json.is_array()) return complain(path, "has to be an array");

@@ -50,6 +50,11 @@ static Json json_of(const std::array<float, N>& values) {
   return array;
 }
 
+template <std::size_t N>
+static Json json_of(const std::array<std::uint32_t, N>& values) {
+  return Json(values);
+}
+
 template <HasFields Part>
 static Json json_of(const Part& part);
 

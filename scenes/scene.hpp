@@ -30,6 +30,12 @@ struct SceneShape {
   Triple normal{};
   float offset = 0.0f;
   bool loop = false;
+  Triple half{};                                          ///< Box: half extents, m.
+  std::array<float, 4> rotation{0, 0, 0, 1.0f};           ///< Box: quaternion x, y, z, w.
+  std::vector<std::array<std::uint32_t, 3>> triangles{};  ///< Mesh: indices into points.
+  std::vector<float> heights{};                           ///< Height field: row by row, m.
+  std::uint32_t columns = 0;                              ///< Height field.
+  std::array<float, 2> cell{};                            ///< Height field: m along x and z.
   float density = 1.0f;
   std::string material;  ///< "": the first of the scene.
   solver::Filter filter;

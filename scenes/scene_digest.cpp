@@ -23,9 +23,9 @@ struct MeaningWriter {
   template <class Number>
   requires std::is_integral_v<Number> || std::is_enum_v<Number>
   void write(Number value) { number(static_cast<std::uint64_t>(value)); }
-  template <std::size_t N>
-  void write(const std::array<float, N>& values) {
-    for (const float value : values) write(value);
+  template <class Number, std::size_t N>
+  void write(const std::array<Number, N>& values) {
+    for (const Number value : values) write(value);
   }
   template <class Element>
   void write(const std::vector<Element>& elements) {

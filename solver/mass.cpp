@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "solver/solids/polyhedron_mass.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
@@ -88,7 +89,8 @@ static void add_rounding(const Shape<2>& shape, float density, MassProperties<2>
   }
 }
 
-static void add_hull(const Shape<2>& shape, float density, MassProperties<2>& into) {
+static void add_hull(const Shape<2>& shape, const Polyhedra&, float density,
+                     MassProperties<2>& into) {
   add_core(shape, density, into);
   if (shape.radius > 0.0f) add_rounding(shape, density, into);
 }
@@ -130,22 +132,6 @@ static void add_box(const Shape<3>& shape, float density, MassProperties<3>& int
   add_part(mass, shape.vertices[0], world_inertia(own, shape.rotation), into);
 }
 
-static void add_hull(const Shape<3>& shape, float density, MassProperties<3>& into) {
-  if (shape.kind == ShapeKind::kCapsule) add_capsule(shape, density, into);
-  if (shape.kind == ShapeKind::kBox) add_box(shape, density, into);
-}
-
-template <int D>
-void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into) {
-  if (shape.kind == ShapeKind::kBall) {
-    const Vec<D> centre = shape.vertices[0];
-    const float mass = density * ball_volume(shape.radius, centre);
-    add_part(mass, centre, ball_inertia(mass, shape.radius, centre), into);
-  } else if (shape.kind != ShapeKind::kHalfSpace && shape.kind != ShapeKind::kSegment) {
-    add_hull(shape, density, into);
-  }
-}
-
 template <int D>
 Inertia<D> central_inertia(const MassProperties<D>& properties) {
   const Vec<D> centre = (1.0f / properties.mass) * properties.first;
@@ -154,16 +140,66 @@ Inertia<D> central_inertia(const MassProperties<D>& properties) {
   return inertia;
 }
 
+static void add_polyhedron(const Shape<3>& shape, const PolyhedronView& hull, float density,
+                           MassProperties<3>& into) {
+  const MassProperties<3> own = mass_of(hull, density);
+  if (!(own.mass > 0.0f)) return;
+  const Vec<3> centre = rotate(shape.rotation, (1.0f / own.mass) * own.first);
+  add_part(own.mass, shape.vertices[0] + centre,
+           world_inertia(central_inertia(own), shape.rotation), into);
+}
+
+static void add_hull(const Shape<3>& shape, const Polyhedra& hulls, float density,
+                     MassProperties<3>& into) {
+  if (shape.kind == ShapeKind::kHull)
+    add_polyhedron(shape, view_of(hulls, shape.polyhedron), density, into);
+  if (shape.kind == ShapeKind::kCapsule) add_capsule(shape, density, into);
+  if (shape.kind == ShapeKind::kBox) add_box(shape, density, into);
+}
+
+template <int D>
+void add_mass(const Shape<D>& shape, const Polyhedra& hulls, float density,
+              MassProperties<D>& into) {
+  if (shape.kind == ShapeKind::kBall) {
+    const Vec<D> centre = shape.vertices[0];
+    const float mass = density * ball_volume(shape.radius, centre);
+    add_part(mass, centre, ball_inertia(mass, shape.radius, centre), into);
+  } else if (shape.kind != ShapeKind::kHalfSpace && shape.kind != ShapeKind::kSegment) {
+    add_hull(shape, hulls, density, into);
+  }
+}
+
+template <int D>
+void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into) {
+  add_mass(shape, Polyhedra{}, density, into);
+}
+
+/// Brings the largest moment to between 1/2 and 1 without rounding, so that a determinant, its
+/// third power, neither underflows nor overflows.
+template <int D>
+static float scale_to_one(const Inertia<D>& inertia) {
+  float largest = 0.0f;
+  for (const float moment : inertia.m) largest = max(largest, abs(moment));
+  if (!(largest >= 1.0e-30f && largest <= 1.0e30f)) return 1.0f;
+  float scale = 1.0f;
+  while (largest * scale >= 1.0f) scale *= 0.5f;
+  while (largest * scale < 0.5f) scale *= 2.0f;
+  return scale;
+}
+
 template <int D>
 Inertia<D> inverse(const Inertia<D>& inertia) {
   constexpr int kSpin = Dim<D>::kSpin;
   using Matrix = Eigen::Matrix<float, kSpin, kSpin>;
-  const Matrix matrix = Eigen::Map<const Matrix>(inertia.m);
+  const float scale = scale_to_one(inertia);
+  const Matrix matrix = scale * Eigen::Map<const Matrix>(inertia.m);
   Inertia<D> result{};
-  if (matrix.determinant() > 0.0f) Eigen::Map<Matrix>(result.m) = matrix.inverse();
+  if (matrix.determinant() > 0.0f) Eigen::Map<Matrix>(result.m) = scale * matrix.inverse();
   return result;
 }
 
+template void add_mass(const Shape<2>&, const Polyhedra&, float, MassProperties<2>&);
+template void add_mass(const Shape<3>&, const Polyhedra&, float, MassProperties<3>&);
 template void add_mass(const Shape<2>&, float, MassProperties<2>&);
 template void add_mass(const Shape<3>&, float, MassProperties<3>&);
 template Inertia<2> central_inertia(const MassProperties<2>&);

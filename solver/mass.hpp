@@ -14,15 +14,24 @@ struct MassProperties {
 };
 
 /// Adds what one shape record contributes at `density` [kg/m^D]. Exact for every kind, rounded
-/// polygons included. Half-spaces and segments have no mass.
+/// polygons included. Half-spaces, segments and triangles have no mass.
+/// @param hulls  where the hull of the shape is, if it has one.
+template <int D>
+void add_mass(const Shape<D>& shape, const Polyhedra& hulls, float density,
+              MassProperties<D>& into);
+
+/// The same. @pre the shape is no hull.
 template <int D>
 void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into);
 
 /// The second moment about the centre of mass instead of the origin. @pre mass > 0.
+///
+/// Shapes of size s at a distance d from the origin keep a relative error of about 1e-7 (d / s)^2:
+/// 1e-5 at ten times their size, 1e-3 at a hundred times.
 template <int D>
 Inertia<D> central_inertia(const MassProperties<D>& properties);
 
-/// The inverse, or zero where there is none.
+/// The inverse, or zero where there is none. Moments from 1e-30 to 1e30 kg m^2 have one.
 template <int D>
 Inertia<D> inverse(const Inertia<D>& inertia);
 

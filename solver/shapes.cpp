@@ -1,5 +1,8 @@
 #include "solver/shapes.hpp"
 
+#include "solver/solids/hull_builder.hpp"
+#include "solver/solids/polyhedra.hpp"
+#include "solver/solids/triangles.hpp"
 #include "solver/validate.hpp"
 
 namespace cycloid::solver {
@@ -96,7 +99,8 @@ static Error append_chain(const ShapeDef<2>& def, int index, std::vector<Shape<2
   return {};
 }
 
-static Error append_hull(const ShapeDef<2>& def, int index, std::vector<Shape<2>>& into) {
+static Error append_outline(const ShapeDef<2>& def, int index, std::vector<Shape<2>>& into,
+                            Polyhedra&) {
   if (def.kind == ShapeKind::kPolygon) return append_polygon(def, index, into);
   if (def.kind == ShapeKind::kCapsule) return append_capsule(def, index, into);
   return append_chain(def, index, into);
@@ -122,16 +126,43 @@ static Error append_box(const ShapeDef<3>& def, std::vector<Shape<3>>& into) {
   return {};
 }
 
-static Error append_hull(const ShapeDef<3>& def, int index, std::vector<Shape<3>>& into) {
-  if (def.kind == ShapeKind::kCapsule) return append_capsule(def, index, into);
-  if (def.kind == ShapeKind::kBox) return append_box(def, into);
-  return {Code::kInvalid, "kind", index};
+static Error append_hull(const ShapeDef<3>& def, int index, std::vector<Shape<3>>& into,
+                         Polyhedra& hulls) {
+  PolyhedronData hull;
+  if (!build_polyhedron(def.points, hull).ok()) return {Code::kInvalid, "points", index};
+  Shape<3> shape = blank_shape(def);
+  shape.vertex_count = 1;
+  shape.vertices[0] = hull.middle;
+  shape.half = hull.half;
+  shape.rotation = identity_rotation<3>();
+  shape.polyhedron = intern(hull.view(), hulls);
+  into.push_back(shape);
+  return {};
+}
+
+static Error append_outline(const ShapeDef<3>& def, int index, std::vector<Shape<3>>& into,
+                            Polyhedra& hulls) {
+  switch (def.kind) {
+    case ShapeKind::kCapsule:
+      return append_capsule(def, index, into);
+    case ShapeKind::kBox:
+      return append_box(def, into);
+    case ShapeKind::kHull:
+      return append_hull(def, index, into, hulls);
+    case ShapeKind::kMesh:
+      return append_mesh(def, index, blank_shape(def), into);
+    case ShapeKind::kHeightField:
+      return append_height_field(def, index, blank_shape(def), into);
+    default:
+      return {Code::kInvalid, "kind", index};
+  }
 }
 
 template <int D>
-Error append_shapes(const ShapeDef<D>& def, int index, std::vector<Shape<D>>& into) {
+Error append_shapes(const ShapeDef<D>& def, int index, std::vector<Shape<D>>& into,
+                    Polyhedra& hulls) {
   if (def.kind != ShapeKind::kBall && def.kind != ShapeKind::kHalfSpace)
-    return append_hull(def, index, into);
+    return append_outline(def, index, into, hulls);
   Shape<D> shape = blank_shape(def);
   if (def.kind == ShapeKind::kBall) {
     shape.vertex_count = 1;
@@ -182,8 +213,8 @@ float thickness_of(const Shape<3>& shape) {
   return shape.radius + min(shape.half[0], min(shape.half[1], shape.half[2]));
 }
 
-template Error append_shapes(const ShapeDef<2>&, int, std::vector<Shape<2>>&);
-template Error append_shapes(const ShapeDef<3>&, int, std::vector<Shape<3>>&);
+template Error append_shapes(const ShapeDef<2>&, int, std::vector<Shape<2>>&, Polyhedra&);
+template Error append_shapes(const ShapeDef<3>&, int, std::vector<Shape<3>>&, Polyhedra&);
 template void shift_shape(const Vec<2>&, Shape<2>&);
 template void shift_shape(const Vec<3>&, Shape<3>&);
 

@@ -147,6 +147,31 @@ static bool point_count_fits(ShapeKind kind, std::size_t count) {
   }
 }
 
+/// What only a mesh or a height field has.
+template <int D>
+static Error validate_triangles(const ShapeDef<D>& def, int index) {
+  constexpr std::size_t kMax = 1u << 24;
+  if (def.kind == ShapeKind::kMesh) {
+    if (def.triangles.empty() || def.triangles.size() > kMax) return invalid("triangles", index);
+    for (const std::array<std::uint32_t, 3>& triangle : def.triangles)
+      for (const std::uint32_t corner : triangle)
+        if (corner >= def.points.size()) return invalid("triangles", index);
+  }
+  if (def.kind == ShapeKind::kHeightField) {
+    if (def.columns < 2 || def.columns > kMax) return invalid("columns", index);
+    const std::size_t count = def.heights.size();
+    if (count < 2 * std::size_t{def.columns} || count % def.columns != 0 || count > kMax)
+      return invalid("heights", index);
+    for (const float height : def.heights)
+      if (!within(height, -kSizeMax, kSizeMax)) return invalid("heights", index);
+    const float steps[2] = {static_cast<float>(def.columns - 1),
+                            static_cast<float>(count / def.columns - 1)};
+    for (std::size_t i = 0; i < 2; ++i)
+      if (!within(def.cell[i], kSizeMin, kSizeMax / steps[i])) return invalid("cell", index);
+  }
+  return {};
+}
+
 template <int D>
 Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int index) {
   if (const Error error = validate_kind(def, body, index); !error.ok()) return error;
@@ -166,6 +191,7 @@ Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int
     if (!is_unit(def.normal)) return invalid("normal", index);
     if (!within(def.offset, -kSizeMax, kSizeMax)) return invalid("offset", index);
   }
+  if (const Error error = validate_triangles(def, index); !error.ok()) return error;
   if (!within(def.density, 0.0f, 1.0e9f)) return invalid("density", index);
   if (def.material >= materials) return invalid("material", index);
   return {};

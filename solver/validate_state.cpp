@@ -1,3 +1,4 @@
+#include "solver/solids/validate_polyhedra.hpp"
 #include "solver/validate.hpp"
 #include "solver/visit.hpp"
 
@@ -211,6 +212,7 @@ Error validate(const WorldState<D>& state) {
   if (const Error error = validate_header(state); !error.ok()) return error;
   if (const Error error = validate_bodies(state); !error.ok()) return error;
   if (const Error error = validate_shapes(state); !error.ok()) return error;
+  if (const Error error = validate_polyhedra(state); !error.ok()) return error;
   if (const Error error = validate_joints(state); !error.ok()) return error;
   if (const Error error = validate_contacts(state); !error.ok()) return error;
   if (const Error error = validate_particles(state); !error.ok()) return error;

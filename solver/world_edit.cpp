@@ -6,6 +6,7 @@
 #include "solver/mass.hpp"
 #include "solver/shapes.hpp"
 #include "solver/slots.hpp"
+#include "solver/solids/polyhedra.hpp"
 #include "solver/step_scratch.hpp"
 #include "solver/validate.hpp"
 #include "solver/wake.hpp"
@@ -22,14 +23,14 @@ static bool is_movable(BodyKind kind) {
 /// Sets mass, inertia and centre of a body; kInvalid "mass" where nothing gives it any.
 template <int D>
 static Error set_mass_properties(const BodyDef<D>& def, std::span<const ShapeDef<D>> defs,
-                                 const std::vector<Shape<D>>& shapes,
+                                 const std::vector<Shape<D>>& shapes, const Polyhedra& hulls,
                                  const std::vector<int>& def_of, Body<D>& body) {
   body.local_center = Vec<D>::zero();
   if (!is_movable<D>(def.kind)) return {};
   MassProperties<D> properties;
   // A stated mass is spread over the shapes by their volume where no density says otherwise.
   for (std::size_t i = 0; i < shapes.size(); ++i)
-    add_mass(shapes[i], defs[static_cast<std::size_t>(def_of[i])].density, properties);
+    add_mass(shapes[i], hulls, defs[static_cast<std::size_t>(def_of[i])].density, properties);
   const bool stated = def.mass != 0.0f;
   if (!stated && !within(properties.mass, kMassMin, kMassMax)) return {Code::kInvalid, "mass"};
   body.mass = stated ? def.mass : properties.mass;
@@ -78,15 +79,16 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
   if (const Error error = validate(def); !error.ok()) return error;
   std::vector<Shape<D>> shapes;
   std::vector<int> def_of;
+  Polyhedra hulls;  // Their own, until nothing can fail any more.
   for (int i = 0; i < static_cast<int>(defs.size()); ++i) {
     const ShapeDef<D>& shape = defs[static_cast<std::size_t>(i)];
     if (const Error error = validate(shape, def.kind, state_.materials.size(), i); !error.ok())
       return error;
-    if (const Error error = append_shapes(shape, i, shapes); !error.ok()) return error;
+    if (const Error error = append_shapes(shape, i, shapes, hulls); !error.ok()) return error;
     def_of.resize(shapes.size(), i);
   }
   Body<D> body = body_from(def);
-  if (const Error error = set_mass_properties(def, defs, shapes, def_of, body); !error.ok())
+  if (const Error error = set_mass_properties(def, defs, shapes, hulls, def_of, body); !error.ok())
     return error;
   if (!has_room(state_.bodies, state_.free_bodies, 1, state_.header.limits.bodies))
     return Error{Code::kCapacity, "limits.bodies"};
@@ -98,8 +100,10 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
   body.position = def.position + rotate(body.rotation, body.local_center);
   // Slots are taken in the order of the shapes and linked back to front.
   std::vector<std::uint32_t> slots;
-  for (std::size_t i = 0; i < shapes.size(); ++i)
+  for (Shape<D>& shape : shapes) {
     slots.push_back(take_slot(state_.shapes, state_.free_shapes));
+    adopt_hull(hulls, state_.polyhedra, shape);
+  }
   for (std::size_t i = shapes.size(); i-- > 0;) {
     Shape<D>& shape = state_.shapes[slots[i]];
     shape = shapes[i];
@@ -141,6 +145,7 @@ Error World<D>::destroy_body(BodyId id) {
   std::erase_if(state_.contacts, is_of_body);
   for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone;) {
     const std::uint32_t next = state_.shapes[s].next;
+    abandon_hull(state_.shapes[s], state_.polyhedra);
     state_.shapes[s] = Shape<D>{};
     state_.free_shapes.push_back(s);
     s = next;

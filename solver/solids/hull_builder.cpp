@@ -60,6 +60,49 @@ static std::vector<std::uint32_t> corners_of(std::span<const GridTriangle> trian
   return corners;
 }
 
+/// The neighbours of a corner and, so that they span a volume, the farthest of the other corners.
+static std::vector<std::uint32_t> surroundings(std::span<const GridPoint> grid,
+                                               std::span<const GridTriangle> triangles,
+                                               std::span<const std::uint32_t> corners,
+                                               std::uint32_t corner) {
+  std::vector<bool> used(grid.size(), false);
+  for (const GridTriangle& triangle : triangles) {
+    const std::array<std::uint32_t, 3>& t = triangle.corners;
+    if (t[0] == corner || t[1] == corner || t[2] == corner)
+      used[t[0]] = used[t[1]] = used[t[2]] = true;
+  }
+  std::uint32_t farthest = corner;
+  float most = 0.0f;
+  for (const std::uint32_t other : corners) {
+    const float distance = length(grid_difference(grid[other], grid[corner]));
+    if (used[other] || distance <= most) continue;
+    most = distance;
+    farthest = other;
+  }
+  used[farthest] = true;
+  used[corner] = false;
+  std::vector<std::uint32_t> around;
+  for (const std::uint32_t other : corners)
+    if (used[other]) around.push_back(other);
+  return around;
+}
+
+/// How far a corner lies outside of the hull of the others, grid steps. Without the corner its
+/// neighbours alone are the corners of the triangles that close the gap, so that their hull tells,
+/// unless it is flat.
+static float height_over_others(std::span<const GridPoint> grid,
+                                std::span<const GridTriangle> triangles,
+                                std::span<const std::uint32_t> corners, std::uint32_t corner) {
+  std::vector<GridTriangle> closed;
+  if (!triangulate_hull(grid, surroundings(grid, triangles, corners, corner), 0.0f, closed)) {
+    std::vector<std::uint32_t> others;
+    for (const std::uint32_t other : corners)
+      if (other != corner) others.push_back(other);
+    if (!triangulate_hull(grid, others, 0.0f, closed)) return kGridSteps;
+  }
+  return height_above(grid[corner], grid, closed);
+}
+
 /// The points of which none lies within `tolerance` of the hull of the others, later ones dropped
 /// first. Then no corner is left in the middle of what is almost a plane or a line, which merging
 /// could not take out.
@@ -69,12 +112,10 @@ static std::vector<std::uint32_t> find_corners(std::span<const GridPoint> grid, 
   std::vector<GridTriangle> triangles;
   if (!triangulate_hull(grid, corners, tolerance, triangles)) return {};
   corners = corners_of(triangles, grid.size());
-  for (std::size_t i = corners.size(); i-- > 0;) {
-    std::vector<std::uint32_t> others = corners;
-    others.erase(others.begin() + static_cast<std::ptrdiff_t>(i));
-    if (triangulate_hull(grid, others, 0.0f, triangles) &&
-        height_above(grid[corners[i]], grid, triangles) <= tolerance)
-      corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+  for (std::size_t i = corners.size(); i-- > 0 && corners.size() > 4;) {
+    if (height_over_others(grid, triangles, corners, corners[i]) > tolerance) continue;
+    corners.erase(corners.begin() + static_cast<std::ptrdiff_t>(i));
+    if (!triangulate_hull(grid, corners, 0.0f, triangles)) return {};
   }
   return corners;
 }

@@ -139,7 +139,7 @@ static Points cloud(int kind, std::mt19937& random) {
 TEST(HullBuilder, ClosesOverTenThousandRandomClouds) {
   std::mt19937 random(1);
   int refused = 0;
-  std::size_t merged = 0;
+  int merged = 0;
   for (int run = 0; run < 10000; ++run) {
     const Points points = cloud(run % 5, random);
     PolyhedronData hull;
@@ -148,11 +148,11 @@ TEST(HullBuilder, ClosesOverTenThousandRandomClouds) {
       continue;
     }
     ASSERT_NO_FATAL_FAILURE(expect_hull(hull, points)) << run;
-    if (hull.faces.size() < 2 * hull.vertices.size() - 4) ++merged;
+    if (run % 5 == 2 && hull.faces.size() < 2 * hull.vertices.size() - 4) ++merged;
   }
   // Four random points are nearly flat now and then, and 64 on a sphere stay within the limit.
   EXPECT_LT(refused, 20);
-  EXPECT_GT(merged, 2000u);
+  EXPECT_GT(merged, 1800);  // Of the 2,000 on a grid.
 }
 
 TEST(HullBuilder, RefusesWhatSpansNoVolume) {
