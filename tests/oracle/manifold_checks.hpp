@@ -21,8 +21,10 @@ struct Tolerance {
   /// first shape rather than of the second: m, and per m of depth.
   double preference = 2.5e-3;
   double preference_of_depth = 0.025;
+  double parallel = 0.03;  ///< rad between a capsule and the face or capsule that it lies along.
+  double lying = 3e-3;     ///< m per m of scale: points of a lying capsule but the deepest.
 
-  /// For a pair whose true gap is this, m.
+  /// Of the least separation, and of the depth along the normal, of a pair with this true gap, m.
   double of(const Pair& pair, double gap) const;
 };
 
@@ -41,9 +43,11 @@ struct Verdict {
 /// - the least separation is the depth of bodies that overlap; that of separated bodies lies
 ///   between the widest gap over the axes of separation and the distance, which only differ where
 ///   corners are nearest;
-/// - along the normal the bodies overlap no deeper than they must;
-/// - a triangle pushes only to its free side. What lies mostly behind it, or gets out of it
-///   sooner to the back, has no separation to be compared with.
+/// - along the normal the bodies overlap no deeper than they must, or it is within
+///   `Tolerance::parallel` of the line between the nearest points;
+/// - a triangle pushes only to its free side. For what has its centre behind it, or gets out of it
+///   sooner to the back, one-sided contact is not defined by geometry alone: it must only not
+///   overlap what is apart.
 Verdict verdict_on(const Pair& pair, const solver::Polyhedra& polyhedra,
                    const Tolerance& tolerance);
 

@@ -20,17 +20,17 @@ static solver::Vec<3> to_float(const Vector& v) {
   return {{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}};
 }
 
-static Placement placement_of(const Pose<3>& pose, const Vector& origin) {
+Placement placement_in(const Pair& pair, const Pose<3>& pose) {
   const Vector imaginary = {pose.rotation[0], pose.rotation[1], pose.rotation[2]};
   const double real = pose.rotation[3];
   const double scale = 1.0 / std::sqrt(dot(imaginary, imaginary) + real * real);
-  return {to_double(pose.position) - origin, scale * imaginary, scale * real};
+  const Vector position = to_double(pose.position) - to_double(pair.pose_a.position);
+  return {position, scale * imaginary, scale * real};
 }
 
 PlacedPair place(const Pair& pair) {
-  const Vector origin = to_double(pair.pose_a.position);
-  const Placement at_a = placement_of(pair.pose_a, origin);
-  const Placement at_b = placement_of(pair.pose_b, origin);
+  const Placement at_a = placement_in(pair, pair.pose_a);
+  const Placement at_b = placement_in(pair, pair.pose_b);
   PlacedPair bodies{placed(pair.a->body, at_a), placed(pair.b->body, at_b), {}};
   if (is_fixed(pair.a->kind)) bodies.normal = at_a.turn(pair.a->normal);
   if (is_fixed(pair.b->kind)) bodies.normal = at_b.turn(pair.b->normal);

@@ -26,6 +26,9 @@ struct PlacedPair {
 
 PlacedPair place(const Pair& pair);
 
+/// A pose of the pair, relative to the position of body a.
+Placement placement_in(const Pair& pair, const solver::Pose<3>& pose);
+
 /// What the oracle says about a pair.
 struct Truth {
   Gap gap;

@@ -82,7 +82,9 @@ static void random_hull(Random& random, bool regular, ShapeDef<3>& def) {
 
 static void random_triangle(Random& random, bool regular, ShapeDef<3>& def) {
   def.kind = ShapeKind::kMesh;
-  const Vector half = random_half(random, regular);
+  const Vector drawn = random_half(random, regular);
+  // A world takes no triangle that is lower than a few millimetres.
+  const Vector half = {std::max(drawn.x, 0.02), 0.0, std::max(drawn.z, 0.02)};
   const Vector along = regular ? Vector{2 * half.x, 0, 0} : 2 * half.x * random.direction();
   const Vector side = regular ? Vector{0, 0, 2 * half.z}
                               : 2 * half.z * perpendicular(cross(along, random.direction()));
