@@ -78,10 +78,12 @@ struct Candidate {
   std::uint32_t feature;
 };
 
-/// Adds at most four of the candidates to the manifold, whose normal is set: all where there are at
-/// most four; otherwise the deepest, the farthest from it, the one that spans the largest triangle
-/// with both, and the one that adds most area beyond that; of equals the first. A depth within
-/// 1e-4 m of the deepest counts as equal, so that resting boxes keep their points.
+/// Adds at most four of the candidates to the manifold, whose normal is set, in their order: all
+/// where there are at most four; otherwise the deepest, the farthest from it, the one that spans
+/// the largest triangle with both, and the one that adds most area beyond that, seen along the
+/// normal; of equals the deepest, then the first. A depth within 1e-4 m of the deepest counts as
+/// equal, and a length or area within 1e-3 of the largest, so that resting boxes keep their points.
+/// Fewer than four where the others add nothing.
 void reduce(std::span<const Candidate> candidates, const Vec<3>& a_to_b, Manifold<3>& manifold);
 
 /// The feature of a point: unique within a manifold, and the same while the same features touch.
