@@ -14,7 +14,6 @@ static float inverse_or_zero(float square) {
 
 static void keep_nearer(const Vec<3>& a_from, const Vec<3>& d1, const Vec<3>& b_from,
                         const Vec<3>& d2, float s, float t, float& square, SegmentPair& best) {
-  // The ends themselves, free of the rounding of a product.
   const Vec<3> on_a = a_from + s * d1;
   const Vec<3> on_b = b_from + t * d2;
   const Vec<3> between = on_b - on_a;
@@ -49,6 +48,12 @@ SegmentPair nearest_points(const Vec<3>& a_from, const Vec<3>& a_to, const Vec<3
   }
   SegmentPair best{};
   float least = 3.0e38f;
+  if (!(square_b > 0.0f)) {
+    keep_nearer(a_from, d1, b_from, d2, nearest_fraction(a_from, d1, inverse_a, b_from), 0.0f,
+                least, best);
+    best.distance = sqrt(least);
+    return best;
+  }
   keep_nearer(a_from, d1, b_from, d2, nearest_fraction(a_from, d1, inverse_a, b_from), 0.0f, least,
               best);
   keep_nearer(a_from, d1, b_from, d2, nearest_fraction(a_from, d1, inverse_a, b_to), 1.0f, least,

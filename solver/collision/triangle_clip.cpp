@@ -38,6 +38,15 @@ static void cut(const Polygon& polygon, std::span<const float> heights, std::uin
   }
 }
 
+/// The corners in use only: a polygon has room for many more.
+static void copy(const Polygon& from, Polygon& to) {
+  to.count = from.count;
+  for (std::uint32_t i = 0; i < from.count; ++i) {
+    to.corners[i] = from.corners[i];
+    to.labels[i] = from.labels[i];
+  }
+}
+
 void clip_polygon(const Solid& solid, std::uint32_t face, float slack, Polygon& polygon) {
   const std::uint32_t first = solid.faces[face].edge;
   std::uint32_t edge = first;
@@ -57,7 +66,7 @@ void clip_polygon(const Solid& solid, std::uint32_t face, float slack, Polygon& 
     }
     if (cuts) {
       cut(polygon, heights, label, kept);
-      polygon = kept;
+      copy(kept, polygon);
     }
     ++label;
     edge = half.next;

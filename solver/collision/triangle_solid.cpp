@@ -12,7 +12,9 @@ struct Contacting {
   std::uint32_t face = 0;
   std::uint32_t triangle_edge = 0;
   std::uint32_t solid_edge = 0;
-  float refused = -3.0e38f;  ///< Separation along the best axis that is a neighbour's, m.
+  float own_separation = 0.0f;  ///< Along the triangle's normal, m.
+  float refused = -3.0e38f;     ///< Along the best axis that is a neighbour's, m.
+  float flat = -3.0e38f;        ///< Along the best axis over an edge that is not convex, m.
 };
 
 /// How much farther apart than the best so far an axis has to be to take its place, m, so that
@@ -35,7 +37,10 @@ static bool takes_over(const Solid& triangle, std::uint32_t edges, const Vec<3>&
   const float along = dot(normal, triangle.normals[0]);
   if (along > kLiesFlat) return false;
   const Leaning leaning = leaning_of(triangle, edges, normal);
-  if (leaning == Leaning::kOwnOnly) return false;
+  if (leaning == Leaning::kOwnOnly) {
+    best.flat = max(best.flat, separation);
+    return false;
+  }
   if (leaning == Leaning::kAllowed && along >= -kFlat) return true;
   best.refused = max(best.refused, separation);
   return false;
@@ -70,8 +75,12 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
   const Vec<3> own = triangle.normals[0];
   const float preferred = preference(solid);
   Vec<3> sides[3];
-  for (std::uint32_t i = 0; i < 3; ++i)
+  std::array<float, kHullFacesMax> turns[3];
+  for (std::uint32_t i = 0; i < 3; ++i) {
     sides[i] = triangle.vertices[i == 2 ? 0 : i + 1] - triangle.vertices[i];
+    for (std::uint32_t f = 0; f < solid.face_count; ++f)
+      turns[i][f] = dot(solid.normals[f], sides[i]);
+  }
   for (std::uint32_t e = 0; e < solid.edge_count; e += 2) {
     const PolyhedronEdge& half = solid.edges[e];
     const PolyhedronEdge& twin = solid.edges[e + 1];
@@ -79,8 +88,8 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
     const Vec<3> along = solid.vertices[twin.origin] - origin;
     const float rise = dot(along, own);
     for (std::uint32_t i = 0; i < 3; ++i) {
-      const float turn = dot(solid.normals[half.face], sides[i]);
-      if (turn * dot(solid.normals[twin.face], sides[i]) >= 0.0f || turn * rise <= 0.0f) continue;
+      const float turn = turns[i][half.face];
+      if (turn * turns[i][twin.face] >= 0.0f || turn * rise <= 0.0f) continue;
       const Vec<3> axis = turn > 0.0f ? cross(sides[i], along) : cross(along, sides[i]);
       const float square = dot(axis, axis);
       // Nearly parallel edges: the faces stand in for them.
@@ -181,8 +190,15 @@ Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, co
     best.separation =
         min(best.separation, dot(best.normal, solid.vertices[i] - triangle.vertices[0]));
   if (best.separation > margin) return {};
+  best.own_separation = best.separation;
   if (!survey_faces(triangle, solid, margin, best)) return {};
   if (!survey_edges(triangle, solid, margin, best)) return {};
+  // A pair of edges that is not the best of all axes need not meet at all.
+  if (best.kind == Contacting::kEdges && max(best.refused, best.flat) > best.separation) {
+    best.kind = Contacting::kOwnFace;
+    best.normal = triangle.normals[0];
+    best.separation = best.own_separation;
+  }
   if (is_another_s(best, preference(solid))) return {};
   Manifold<3> manifold;
   add_contact(triangle, solid, best, a_to_b, margin, manifold);

@@ -1,9 +1,4 @@
-#include <gtest/gtest.h>
-
-#include <cmath>
-#include <random>
-
-#include "solver/collision/rod.hpp"
+#include "tests/solver/round_fixture.hpp"
 
 namespace cycloid::solver {
 
@@ -84,57 +79,6 @@ double box_distance(const Solid& box, const Rod& rod) {
   }
   return best;
 }
-
-Solid make_box(const Vec<3>& half, const Vec<3>& position,
-               const Rotation<3>& rotation = identity_rotation<3>()) {
-  Shape<3> shape;
-  shape.kind = ShapeKind::kBox;
-  shape.vertices[0] = Vec<3>::zero();
-  shape.half = half;
-  shape.rotation = identity_rotation<3>();
-  Solid solid;
-  place(shape, {}, rotation, position, solid);
-  return solid;
-}
-
-struct Draw {
-  std::mt19937 generator{7};
-  float within(float lower, float upper) {
-    const double unit = static_cast<double>(generator()) / 4294967296.0;
-    return static_cast<float>(lower + (upper - lower) * unit);
-  }
-  Vec<3> vector(float size) {
-    return {{within(-size, size), within(-size, size), within(-size, size)}};
-  }
-  Rotation<3> rotation() {
-    Rotation<3> q = {{within(-1, 1), within(-1, 1), within(-1, 1), within(-1, 1)}};
-    return normalized_or(q, identity_rotation<3>());
-  }
-};
-
-float deepest(const Manifold<3>& manifold) {
-  float separation = 1.0e30f;
-  for (std::uint32_t i = 0; i < manifold.point_count; ++i)
-    separation = std::min(separation, manifold.points[i].separation);
-  return separation;
-}
-
-bool is_finite(const Manifold<3>& manifold) {
-  bool finite = true;
-  for (std::uint32_t i = 0; i < manifold.point_count; ++i)
-    for (int k = 0; k < 3; ++k)
-      finite = finite && std::isfinite(manifold.points[i].anchor_a[k]) &&
-               std::isfinite(manifold.points[i].separation);
-  return finite && (manifold.point_count == 0 || std::abs(length(manifold.normal) - 1.0f) < 1e-5f);
-}
-
-void expect_normal(const Manifold<3>& manifold, float x, float y, float z, float within = 1e-6f) {
-  EXPECT_NEAR(manifold.normal[0], x, within);
-  EXPECT_NEAR(manifold.normal[1], y, within);
-  EXPECT_NEAR(manifold.normal[2], z, within);
-}
-
-const Vec<3> kZero = Vec<3>::zero();
 
 TEST(RodCollision, CrossedCapsulesMeetWhereTheirAxesAreNearest) {
   const Rod a = {{{-1.0f, 0.0f, 0.0f}}, {{1.0f, 0.0f, 0.0f}}, 0.25f};
@@ -379,6 +323,37 @@ TEST(RodCollision, FeaturesPersistUnderSmallMotion) {
   }
   EXPECT_GT(compared, 800);
   EXPECT_LE(changed, 4);
+}
+
+// Sizes by a power of two change no digit: nothing in it has a length of its own.
+TEST(RodCollision, IsTheSameAtAllSizes) {
+  Draw draw;
+  int met = 0;
+  for (int i = 0; i < 2000; ++i) {
+    const Vec<3> half = {{0.3f, 0.5f, 0.7f}};
+    const Rotation<3> turn = draw.rotation();
+    const Rod a = {draw.vector(1.0f), draw.vector(1.0f), 0.3f};
+    const Rod b = {draw.vector(1.0f), draw.vector(1.0f), 0.2f};
+    for (const float size : {1.0f / 1024.0f, 1024.0f}) {
+      const auto scaled = [&](const Rod& r) {
+        return Rod{size * r.from, size * r.to, size * r.radius};
+      };
+      const Manifold<3> pairs[2][2] = {
+          {rod_against_rod(a, b, kZero, 0.1f),
+           rod_against_rod(scaled(a), scaled(b), kZero, 0.1f * size)},
+          {solid_against_rod(make_box(half, kZero, turn), a, kZero, 0.1f),
+           solid_against_rod(make_box(size * half, kZero, turn), scaled(a), kZero, 0.1f * size)}};
+      for (const auto& [one, other] : pairs) {
+        ASSERT_EQ(one.point_count, other.point_count);
+        met += static_cast<int>(one.point_count);
+        for (std::uint32_t k = 0; k < one.point_count; ++k) {
+          ASSERT_EQ(size * one.points[k].separation, other.points[k].separation);
+          ASSERT_EQ(one.points[k].feature, other.points[k].feature);
+        }
+      }
+    }
+  }
+  EXPECT_GT(met, 2000);
 }
 
 TEST(RodCollision, HalfSpaceMeetsABallInOnePointAndACapsuleInTwo) {
