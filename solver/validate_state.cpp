@@ -76,6 +76,12 @@ static bool outline_fits(const WorldState<2>&, const Shape<2>& shape) {
       return false;
   }
 }
+static bool has_size(const Vec<3>& half) {
+  for (const float extent : half.v)
+    if (!within(extent, 0.0f, 2.0f * kSizeMax)) return false;
+  return true;
+}
+
 static bool outline_fits(const WorldState<3>& state, const Shape<3>& shape) {
   const std::uint32_t n = shape.vertex_count;
   const bool turned = within(dot(shape.rotation, shape.rotation), 0.99f, 1.01f);
@@ -89,11 +95,12 @@ static bool outline_fits(const WorldState<3>& state, const Shape<3>& shape) {
     case ShapeKind::kCapsule:
       return n == 2;
     case ShapeKind::kTriangle:
-      return n == 3 && shape.ghosts < 8;
+      return n == 3 && shape.ghosts < 8 && within(dot(shape.normal, shape.normal), 0.99f, 1.01f);
     case ShapeKind::kBox:
-      return n == 1 && turned;
+      return n == 1 && turned && has_size(shape.half);
     case ShapeKind::kHull:
-      return n == 1 && turned && shape.polyhedron < state.polyhedra.records.size() &&
+      return n == 1 && turned && has_size(shape.half) &&
+             shape.polyhedron < state.polyhedra.records.size() &&
              state.polyhedra.records[shape.polyhedron].references > 0;
     default:
       return false;

@@ -70,6 +70,7 @@ static bool loops_close(const PolyhedronView& hull) {
   return walked == hull.edges.size();
 }
 
+/// No corner outside of a face, and those of a face on it.
 static bool is_convex(const PolyhedronView& hull) {
   float size = 0.0f;
   for (const PolyhedronVertex& vertex : hull.vertices) {
@@ -82,6 +83,11 @@ static bool is_convex(const PolyhedronView& hull) {
     if (!within(face.offset, -4.0f * kSizeMax, 4.0f * kSizeMax)) return false;
     for (const PolyhedronVertex& vertex : hull.vertices)
       if (!(dot(face.normal, vertex.position) <= face.offset + rounding)) return false;
+  }
+  for (const PolyhedronEdge& edge : hull.edges) {
+    const PolyhedronFace& face = hull.faces[edge.face];
+    const Vec<3>& corner = hull.vertices[edge.origin].position;
+    if (!(dot(face.normal, corner) >= face.offset - rounding)) return false;
   }
   return true;
 }
