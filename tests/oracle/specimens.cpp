@@ -85,9 +85,8 @@ static void random_triangle(Random& random, bool regular, ShapeDef<3>& def) {
   const Vector drawn = random_half(random, regular);
   // A world takes no triangle that is lower than a few millimetres.
   const Vector half = {std::max(drawn.x, 0.02), 0.0, std::max(drawn.z, 0.02)};
-  const Vector along = regular ? Vector{2 * half.x, 0, 0} : 2 * half.x * random.direction();
-  const Vector side = regular ? Vector{0, 0, 2 * half.z}
-                              : 2 * half.z * perpendicular(cross(along, random.direction()));
+  const Vector along = 2 * half.x * (regular ? Vector{1, 0, 0} : random.direction());
+  const Vector side = 2 * half.z * (regular ? Vector{0, 0, 1} : perpendicular(along));
   const double shear = regular ? 0.125 * random.below(9) : random.within(-0.5, 1.5);
   def.points = {to_float({}), to_float(side + shear * along), to_float(along)};
   if (regular && random.below(2) == 0) std::swap(def.points[1], def.points[2]);
