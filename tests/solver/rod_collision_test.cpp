@@ -2,25 +2,25 @@
 
 namespace cycloid::solver {
 
-struct Exact {
+struct Accurate {
   double x, y, z;
 };
-Exact exact(const Vec<3>& v) {
+Accurate accurate(const Vec<3>& v) {
   return {v[0], v[1], v[2]};
 }
-Exact operator+(Exact a, Exact b) {
+Accurate operator+(Accurate a, Accurate b) {
   return {a.x + b.x, a.y + b.y, a.z + b.z};
 }
-Exact operator-(Exact a, Exact b) {
+Accurate operator-(Accurate a, Accurate b) {
   return {a.x - b.x, a.y - b.y, a.z - b.z};
 }
-Exact operator*(double s, Exact a) {
+Accurate operator*(double s, Accurate a) {
   return {s * a.x, s * a.y, s * a.z};
 }
-double dot(Exact a, Exact b) {
+double dot(Accurate a, Accurate b) {
   return a.x * b.x + a.y * b.y + a.z * b.z;
 }
-Exact cross(Exact a, Exact b) {
+Accurate cross(Accurate a, Accurate b) {
   return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
 }
 
@@ -37,45 +37,45 @@ double least(F f) {
   return std::min({f(0.5 * (lower + upper)), f(0.0), f(1.0)});
 }
 
-double segments_distance(const Rod& a, const Rod& b) {
-  const Exact d1 = exact(a.to) - exact(a.from);
-  const Exact d2 = exact(b.to) - exact(b.from);
+static double segments_distance(const Rod& a, const Rod& b) {
+  const Accurate d1 = accurate(a.to) - accurate(a.from);
+  const Accurate d2 = accurate(b.to) - accurate(b.from);
   return least([&](double s) {
-    const Exact offset = exact(a.from) + s * d1 - exact(b.from);
+    const Accurate offset = accurate(a.from) + s * d1 - accurate(b.from);
     const double square = dot(d2, d2);
     const double t = square > 0.0 ? std::clamp(dot(offset, d2) / square, 0.0, 1.0) : 0.0;
-    const Exact between = offset - t * d2;
+    const Accurate between = offset - t * d2;
     return std::sqrt(dot(between, between));
   });
 }
 
 /// Of the core of a rod from a box; negative: the least it has to move to leave the box.
-double box_distance(const Solid& box, const Rod& rod) {
-  const Exact from = exact(rod.from) - exact(box.centre);
-  const Exact along = exact(rod.to) - exact(rod.from);
+static double box_distance(const Solid& box, const Rod& rod) {
+  const Accurate from = accurate(rod.from) - accurate(box.centre);
+  const Accurate along = accurate(rod.to) - accurate(rod.from);
   const double apart = least([&](double s) {
-    const Exact p = from + s * along;
+    const Accurate p = from + s * along;
     double square = 0.0;
     for (int k = 0; k < 3; ++k) {
-      const double out = std::abs(dot(p, exact(box.axes[k]))) - box.half[k];
+      const double out = std::abs(dot(p, accurate(box.axes[k]))) - box.half[k];
       if (out > 0.0) square += out * out;
     }
     return std::sqrt(square);
   });
   if (apart > 1.0e-9) return apart;
   double best = -1.0e30;
-  const auto try_axis = [&](Exact axis) {
+  const auto try_axis = [&](Accurate axis) {
     const double size = std::sqrt(dot(axis, axis));
     if (size < 1.0e-9) return;
     double reach = 0.0;
-    for (int k = 0; k < 3; ++k) reach += box.half[k] * std::abs(dot(axis, exact(box.axes[k])));
+    for (int k = 0; k < 3; ++k) reach += box.half[k] * std::abs(dot(axis, accurate(box.axes[k])));
     const double ends[2] = {dot(axis, from), dot(axis, from + along)};
     best = std::max(best, (std::min(ends[0], ends[1]) - reach) / size);
     best = std::max(best, (-std::max(ends[0], ends[1]) - reach) / size);
   };
   for (int k = 0; k < 3; ++k) {
-    try_axis(exact(box.axes[k]));
-    try_axis(cross(exact(box.axes[k]), along));
+    try_axis(accurate(box.axes[k]));
+    try_axis(cross(accurate(box.axes[k]), along));
   }
   return best;
 }
@@ -162,8 +162,8 @@ TEST(RodCollision, CapsulePairsMatchTheDistanceInDoublePrecision) {
     if (expected + a.radius + b.radius > 1e-3) {
       ASSERT_GT(-dot(m.normal, back.normal), 1.0f - 1e-5f);
       const auto support = [&](const Rod& r, bool low) {
-        const double ends[2] = {dot(exact(m.normal), exact(r.from)),
-                                dot(exact(m.normal), exact(r.to))};
+        const double ends[2] = {dot(accurate(m.normal), accurate(r.from)),
+                                dot(accurate(m.normal), accurate(r.to))};
         return low ? std::min(ends[0], ends[1]) - r.radius : std::max(ends[0], ends[1]) + r.radius;
       };
       ASSERT_NEAR(support(b, true) - support(a, false), expected, 1e-4) << i;
@@ -290,9 +290,9 @@ TEST(RodCollision, CapsuleBoxPairsMatchTheDistanceInDoublePrecision) {
     ASSERT_NEAR(deepest(m), expected, 1e-4) << i;
     double top = -1e30;
     for (std::uint32_t v = 0; v < 8; ++v)
-      top = std::max(top, dot(exact(m.normal), exact(box.vertices[v])));
-    const double low =
-        std::min(dot(exact(m.normal), exact(rod.from)), dot(exact(m.normal), exact(rod.to)));
+      top = std::max(top, dot(accurate(m.normal), accurate(box.vertices[v])));
+    const double low = std::min(dot(accurate(m.normal), accurate(rod.from)),
+                                dot(accurate(m.normal), accurate(rod.to)));
     if (expected + rod.radius > 1e-2 || expected + rod.radius < -1e-4) {
       ASSERT_NEAR(low - top - rod.radius, expected, 0.05) << i;
     }

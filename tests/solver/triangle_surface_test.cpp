@@ -69,7 +69,7 @@ TEST(TriangleSurface, BallOverARidgeIsAlwaysMetAtItsTrueDistance) {
 }
 
 /// Whether a point lies under a triangle.
-bool is_under(const std::vector<Solid>& triangles, const Vec<3>& point) {
+static bool is_under(const std::vector<Solid>& triangles, const Vec<3>& point) {
   for (const Solid& t : triangles) {
     const Rod down = {{{point[0], 10.0f, point[2]}}, {{point[0], -10.0f, point[2]}}, 0.0f};
     const Vec<3> up = t.normals[0];
@@ -82,7 +82,7 @@ bool is_under(const std::vector<Solid>& triangles, const Vec<3>& point) {
 }
 
 /// From the axis of a rod to a triangle; 0 where they cross.
-float triangle_distance(const Solid& t, const Rod& rod) {
+static float triangle_distance(const Solid& t, const Rod& rod) {
   const float from = dot(t.normals[0], rod.from - t.vertices[0]);
   const float to = dot(t.normals[0], rod.to - t.vertices[0]);
   const auto over = [&](const Vec<3>& p) { return clip_to_face(t, 0, {p, p, 0.0f}, 0.0f).to > 0; };
@@ -118,7 +118,7 @@ TEST(TriangleSurface, RodOverAnUnevenSurfaceIsAlwaysMetAtItsTrueDistance) {
 }
 
 /// How deep the triangles reach into a box, from points all over them, m.
-float depth_in(const std::vector<Solid>& triangles, const Solid& box) {
+static float depth_in(const std::vector<Solid>& triangles, const Solid& box) {
   float deep = -1.0f;
   for (const Solid& t : triangles)
     for (int u = 0; u <= 30; ++u)
