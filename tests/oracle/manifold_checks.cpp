@@ -70,6 +70,11 @@ static double outside(const Case& c, const Specimen& specimen, const Convex& bod
 static void check_points(Case& c) {
   const bool lying = c.pair.a->kind == Kind::kCapsule || c.pair.b->kind == Kind::kCapsule;
   const double least = c.least();
+  // Along an axis of separation that is not the way between the nearest points, those lie aside.
+  const double aside = c.truth.lower > 0.0
+                           ? std::sqrt(std::max(0.0, c.truth.gap.value * c.truth.gap.value -
+                                                         c.truth.lower * c.truth.lower))
+                           : 0.0;
   const Vector normal = to_double(c.manifold.normal);
   const Vector between = to_double(c.pair.pose_b.position) - to_double(c.pair.pose_a.position);
   for (std::uint32_t i = 0; i < c.manifold.point_count; ++i) {
@@ -81,7 +86,7 @@ static void check_points(Case& c) {
     const double outside_a = outside(c, *c.pair.a, c.bodies.a, at - half_way);
     const double outside_b = outside(c, *c.pair.b, c.bodies.b, at + half_way);
     const bool deepest = point.separation <= least + 1e-6;
-    const double slack = lying && !deepest ? c.allowed.lying * c.pair.scale() : 0.0;
+    const double slack = aside + (lying && !deepest ? c.allowed.lying * c.pair.scale() : 0.0);
     const bool within_one = std::min(outside_a, outside_b) <= c.tolerance + slack;
     if (std::max(outside_a, outside_b) > c.tolerance + slack)
       c.complain(within_one ? "point beside one body" : "point beside both bodies",
@@ -148,17 +153,20 @@ static void check_values(Case& c, bool has_points) {
                "bound", lower);
 }
 
-/// A capsule beside the end of a face has its deepest end outside of it, so the depth along the
-/// normal of the face says nothing; what says something is that the normal is almost the line
-/// between the nearest points.
+/// Beside the end of a face, or of a triangle, the other body reaches deeper, so the depth along
+/// the normal of the face says nothing there; what says something is that the normal is almost the
+/// best direction.
 static void check_normal(Case& c) {
   if (!triangle_is_free(c)) return;
   const Vector normal = to_double(c.manifold.normal);
   const double along = gap_of(c.pair, c.bodies, normal);
-  if (along >= c.truth.lower - c.tolerance - c.allowed.reduction * c.pair.scale()) return;
+  const double slack = c.allowed.reduction * c.pair.scale() +
+                       c.allowed.preference_of_depth * std::max(0.0, -c.truth.gap.value);
+  if (along >= c.truth.lower - c.tolerance - slack) return;
   const double angle = length(normal - c.truth.gap.direction);
-  const bool round = is_round(c.pair.a->kind) || is_round(c.pair.b->kind);
-  if (round && angle <= c.allowed.parallel) return;
+  const bool whole = c.pair.a->kind != Kind::kTriangle && c.pair.b->kind != Kind::kTriangle &&
+                     !is_round(c.pair.a->kind) && !is_round(c.pair.b->kind);
+  if (!whole && angle <= c.allowed.parallel) return;
   c.complain("normal not the best", along, "true", c.truth.gap.value, "bound", c.truth.lower,
              "angle", angle);
 }

@@ -21,7 +21,7 @@ struct Tolerance {
   /// first shape rather than of the second: m, and per m of depth.
   double preference = 2.5e-3;
   double preference_of_depth = 0.025;
-  double parallel = 0.03;  ///< rad between a capsule and the face or capsule that it lies along.
+  double parallel = 0.03;  ///< rad between the best normal and that of a face that is preferred.
   double lying = 3e-3;     ///< m per m of scale: points of a lying capsule but the deepest.
 
   /// Of the least separation, and of the depth along the normal, of a pair with this true gap, m.
