@@ -35,17 +35,17 @@ struct Verdict {
 };
 
 /// All that `solver::collide` promises about the pair, in both orders and 1024 m away:
-/// - finite numbers, a unit normal, at most four points with features of their own, none farther
-///   than the margin; both anchors of a point are one place;
-/// - the two points of the surfaces that a contact point stands for lie in the bodies;
-/// - no points where the widest gap over the axes of separation is beyond the margin, and at least
-///   one where the distance is below it;
-/// - the least separation is the depth of bodies that overlap; that of separated bodies lies
+/// - Numbers are finite, the normal is of unit length, at most four points have features of their
+///   own, none is beyond the margin, and both anchors of a point are one place.
+/// - The two points of the surfaces that a contact point stands for lie in the bodies.
+/// - There are no points where the widest gap over the axes of separation is beyond the margin, and
+///   there is at least one where the distance is below it.
+/// - The least separation is the depth of bodies that overlap. That of separated bodies lies
 ///   between the widest gap over the axes of separation and the distance, which only differ where
-///   corners are nearest;
-/// - along the normal the bodies overlap no deeper than they must, or it is within
-///   `Tolerance::parallel` of the line between the nearest points;
-/// - a triangle pushes only to its free side. For what has its centre behind it, or gets out of it
+///   corners are nearest.
+/// - Along the normal the bodies overlap no deeper than they must, or it is within
+///   `Tolerance::parallel` of the best one.
+/// - A triangle pushes only to its free side. For what has its centre behind it, or gets out of it
 ///   sooner to the back, one-sided contact is not defined by geometry alone: it must only not
 ///   overlap what is apart.
 Verdict verdict_on(const Pair& pair, const solver::Polyhedra& polyhedra,
