@@ -24,8 +24,8 @@ endforeach()
 # And what the interface of a world names in deeper folders: queries, characters, constraints of the
 # user's own.
 foreach(header
-    particles/particle.hpp collision/manifold.hpp constraints/rows.hpp queries/query.hpp
-    queries/time_of_impact.hpp character/planes.hpp character/mover.hpp)
+    particles/particle.hpp solids/polyhedron.hpp collision/manifold.hpp constraints/rows.hpp
+    queries/query.hpp queries/time_of_impact.hpp character/planes.hpp character/mover.hpp)
   get_filename_component(folder ${header} DIRECTORY)
   install(FILES ${PROJECT_SOURCE_DIR}/solver/${header}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/solver/${folder})

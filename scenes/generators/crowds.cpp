@@ -45,7 +45,7 @@ Scene ball_pit(int balls) {
     Control push;
     push.index = axis;
     push.target = "stirrer";
-    push.value[axis] = axis == 1 ? 20.0f : 12.0f;
+    push.value[axis] = axis == 1 ? 3.0f : 2.0f;
     seat.controls.push_back(push);
   }
   SceneBody drop;

@@ -30,6 +30,20 @@ static SceneBody hills() {
   return body;
 }
 
+/// Walls around the hills, so that a lost car is not lost for ever.
+static SceneBody fence() {
+  SceneBody body = frame();
+  body.name = "fence";
+  for (const Triple& normal : {Triple{1.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f},
+                               {0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, -1.0f}}) {
+    SceneShape& wall = body.shapes.emplace_back();
+    wall.kind = solver::ShapeKind::kHalfSpace;
+    wall.normal = normal;
+    wall.offset = normal[0] < 0.0f ? -69.0f : -9.5f;
+  }
+  return body;
+}
+
 static void add_wheel(Scene& scene, const std::string& name, const Triple& place, bool steers) {
   // A wheel's hull: a prism of 20 sides would rattle, so it rolls on a ball as wide as it is high.
   SceneBody wheel = body_at(name, {place[0], place[1] + 0.9f, place[2]}, ball_shape(0.4f));
@@ -62,6 +76,7 @@ Scene vehicle_3d() {
   Scene scene = spatial_scene("vehicle-3d", "A car on springs crosses hills; a seat steers it.");
   scene.materials.push_back({"tyre", 1.2f, 0.0f, 0.01f});
   scene.bodies.push_back(hills());
+  scene.bodies.push_back(fence());
   SceneShape hull;
   hull.kind = solver::ShapeKind::kHull;
   for (const float z : {-0.6f, 0.6f})
@@ -94,8 +109,9 @@ Scene vehicle_3d() {
     seat.controls.push_back(steering_control(1, wheel, 0.5f));
   seat.controls.push_back(impulse_control(0, "chassis", {0.0f, 6.0f, 0.0f}));
   seat.script.push_back({30, 0, 0, 1, {1.0f, 0.0f, 0.0f, 0.0f}, 0});
-  seat.script.push_back({150, 0, 240, 60, {1.0f, 0.4f, 0.0f, 0.0f}, 0});
-  seat.script.push_back({270, 0, 240, 60, {0.8f, -0.4f, 0.0f, 0.0f}, 1});
+  seat.script.push_back({150, 0, 180, 30, {1.0f, 0.3f, 0.0f, 0.0f}, 0});
+  seat.script.push_back({180, 0, 180, 60, {0.8f, -0.3f, 0.0f, 0.0f}, 1});
+  seat.script.push_back({240, 0, 180, 30, {0.8f, 0.3f, 0.0f, 0.0f}, 0});
   scene.seats.push_back(seat);
   return scene;
 }
@@ -120,6 +136,7 @@ Scene bridge_3d(int planks) {
     banks.shapes.push_back(bank);
   }
   scene.bodies.push_back(banks);
+  scene.bodies.push_back(ground());
   std::string before = "banks";
   Triple anchor = {-half, 10.0f, 0.0f};
   for (int i = 0; i < planks; ++i) {

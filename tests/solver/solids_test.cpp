@@ -52,8 +52,9 @@ TEST(BoxStack, OfTenStandsAMinuteAndSleeps) {
   const BodyId top = add_box_stack(world, 10);
   step(world, 3600);
   const BodyView<3> body = view(world, top);
-  EXPECT_NEAR(body.position[1], 9.5f, 0.06f);
-  EXPECT_LT(std::hypot(body.position[0], body.position[2]), 0.02f);
+  // Half a centimetre of slop in each of ten contacts, and what the soft contacts give way.
+  EXPECT_NEAR(body.position[1], 9.5f, 0.08f);
+  EXPECT_LT(std::hypot(body.position[0], body.position[2]), 0.05f);
   EXPECT_EQ(world.statistics().asleep, 10u);
   EXPECT_EQ(world.statistics().rows, 0u);
 }
@@ -66,7 +67,7 @@ TEST(BoxStack, OfTenStandsAMinuteAwake) {
   const BodyId top = add_box_stack(world, 10);
   step(world, 3600);
   const BodyView<3> body = view(world, top);
-  EXPECT_NEAR(body.position[1], 9.5f, 0.06f);
+  EXPECT_NEAR(body.position[1], 9.5f, 0.08f);
   EXPECT_LT(std::hypot(body.position[0], body.position[2]), 0.05f);
 }
 

@@ -197,8 +197,8 @@ TEST(SolidImpact, StopsFastRodsAndBoxesAtAHalfSpace) {
   }
 }
 
-/// The tick of the impact alone: what follows it is the contact solver's.
-TEST(SolidImpact, EndsTheTickOfAFastBodyBeforeAThinWall) {
+/// Neither in the tick of the impact nor later, whatever the contact solver makes of it.
+TEST(SolidImpact, StopsAFastBodyBeforeAThinWall) {
   for (const bool rod : {false, true}) {
     World<3> world = make_world<3>();
     BodyDef<3> def;
@@ -218,10 +218,14 @@ TEST(SolidImpact, EndsTheTickOfAFastBodyBeforeAThinWall) {
       shot.spin = {{0, 0, 50}};
     }
     const BodyId id = add(world, shot, shape);
+    const Vec<3> normal = rotate(def.rotation, Vec<3>{{1, 0, 0}});
+    const auto height = [&] { return dot(normal, view(world, id).position - def.position); };
     step(world, 1);
-    const BodyView<3> stopped = view(world, id);
-    EXPECT_LT(stopped.position[0], 40 - 0.06f);
-    EXPECT_GT(stopped.position[0], 40 - 0.75f);
+    EXPECT_GT(height(), -0.75f);
+    for (int tick = 0; tick < 30; ++tick) {
+      EXPECT_LT(height(), -0.05f) << tick;
+      step(world, 1);
+    }
   }
 }
 
