@@ -84,7 +84,8 @@ struct StepScratch {
 
   std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
   std::vector<BodyMass<D>> masses;
-  std::vector<std::uint32_t> used_colors;  ///< Bit set by body slot.
+  std::vector<std::uint8_t> inertia_turned;  ///< By body: its mass is of this substep's rotation.
+  std::vector<std::uint32_t> used_colors;    ///< Bit set by body slot.
   std::vector<int> color_of;
   std::vector<int> live_joints;
   Coloring joint_coloring;  ///< `order` holds joint slots.

@@ -75,9 +75,9 @@ struct Arms {
 /// impulses of a pair then act at one place, so angular momentum is kept to rounding; arms that are
 /// fixed to each centre (Catto, Solver2D) let the two places part while the bodies slide.
 template <int D, int W>
-Arms<D, Lanes<W>> arms_of(const ContactBlock<D, W>& block,
-                          const typename ContactBlock<D, W>::Point& point,
-                          const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline Arms<D, Lanes<W>> arms_of(
+    const ContactBlock<D, W>& block, const typename ContactBlock<D, W>::Point& point,
+    const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
   const Vec<D, Lanes<W>> slide = b.delta_position - a.delta_position;
   const Vec<D, Lanes<W>> r_a = point.r_a + block.share_b * slide;
   return {r_a, point.r_b + (block.share_b * slide - slide)};
@@ -85,15 +85,19 @@ Arms<D, Lanes<W>> arms_of(const ContactBlock<D, W>& block,
 
 /// direction . (v_b + w_b x r_b - v_a - w_a x r_a).
 template <int D, int W>
-Lanes<W> relative_speed(const Vec<D, Lanes<W>>& direction, const Arms<D, Lanes<W>>& arms,
-                        const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline Lanes<W> relative_speed(const Vec<D, Lanes<W>>& direction,
+                                                      const Arms<D, Lanes<W>>& arms,
+                                                      const MotionLanes<D, W>& a,
+                                                      const MotionLanes<D, W>& b) {
   return dot(direction, (b.velocity + spin_cross(b.spin, arms.r_b)) -
                             (a.velocity + spin_cross(a.spin, arms.r_a)));
 }
 
 template <int D, int W>
-void apply_pair(const Vec<D, Lanes<W>>& impulse, const Arms<D, Lanes<W>>& arms,
-                const ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline void apply_pair(const Vec<D, Lanes<W>>& impulse,
+                                              const Arms<D, Lanes<W>>& arms,
+                                              const ContactBlock<D, W>& block, MotionLanes<D, W>& a,
+                                              MotionLanes<D, W>& b) {
   if (!block.turns) {
     a.velocity -= block.mass_a.inverse_mass * impulse;
     b.velocity += block.mass_b.inverse_mass * impulse;
@@ -144,9 +148,9 @@ struct NormalRow {
 
 /// Separation along the normal of the tick's start at the present poses.
 template <int D, int W>
-Lanes<W> separation_of(const ContactBlock<D, W>& block,
-                       const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
-                       const MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline Lanes<W> separation_of(
+    const ContactBlock<D, W>& block, const typename ContactBlock<D, W>::Point& point,
+    const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
   const Vec<D, Lanes<W>> turned_b = rotate(b.delta_rotation, point.r_b) - point.r_b;
   const Vec<D, Lanes<W>> turned_a = rotate(a.delta_rotation, point.r_a) - point.r_a;
   const Vec<D, Lanes<W>> moved =
@@ -159,9 +163,10 @@ Lanes<W> separation_of(const ContactBlock<D, W>& block,
 /// overlap alone: what is apart may not come closer by them. A relax sweep looks one substep ahead;
 /// what is about to bounce there keeps its `speed`, or it would arrive without it.
 template <int D, int W>
-NormalRow<W> normal_row(const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
-                        const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
-                        const MotionLanes<D, W>& b, const Lanes<W>& speed) {
+[[gnu::always_inline]] inline NormalRow<W> normal_row(
+    const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
+    const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
+    const MotionLanes<D, W>& b, const Lanes<W>& speed) {
   using L = Lanes<W>;
   NormalRow<W> row;
   row.separation = separation_of(block, point, a, b);
@@ -186,8 +191,9 @@ NormalRow<W> normal_row(const StepContext<D>& context, Sweep sweep, const Contac
 }
 
 template <int D, int W>
-void turn_pair(const Spin<D, Lanes<W>>& impulse, const ContactBlock<D, W>& block,
-               MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline void turn_pair(const Spin<D, Lanes<W>>& impulse,
+                                             const ContactBlock<D, W>& block, MotionLanes<D, W>& a,
+                                             MotionLanes<D, W>& b) {
   a.spin -= turned_by<D, W>(block.mass_a, impulse);
   b.spin += turned_by<D, W>(block.mass_b, impulse);
 }
@@ -210,7 +216,7 @@ void warm_start(const ContactBlock<D, W>& block, std::span<Motion<D>> motions) {
 
 /// Holds an impulse of N components to a length of at most `bound`; in the plane an interval.
 template <int N, class L>
-void hold_to_cone(const L& bound, L (&impulse)[N]) {
+[[gnu::always_inline]] inline void hold_to_cone(const L& bound, L (&impulse)[N]) {
   if constexpr (N == 1) {
     impulse[0] = max(-bound, min(impulse[0], bound));
   } else {
@@ -241,9 +247,10 @@ void slide_against(const L& bound, const L (&impulse)[2], const L (&mass)[2], co
 /// Coulomb friction of one point against its normal impulse: in the plane the impulse is held to an
 /// interval, in space to a disc.
 template <int D, int W>
-void solve_friction(const StepContext<D>& context, ContactBlock<D, W>& block,
-                    typename ContactBlock<D, W>::Point& point, MotionLanes<D, W>& a,
-                    MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline void solve_friction(const StepContext<D>& context,
+                                                  ContactBlock<D, W>& block,
+                                                  typename ContactBlock<D, W>::Point& point,
+                                                  MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   constexpr int kTangents = Dim<D>::kTangents;
   const Arms<D, L> arms = arms_of(block, point, a, b);
@@ -267,9 +274,11 @@ void solve_friction(const StepContext<D>& context, ContactBlock<D, W>& block,
 
 /// Clamps the accumulated impulse, not its change: a sweep may take back what an earlier one gave.
 template <int D, int W>
-void set_normal_impulse(const Lanes<W>& wanted, const Arms<D, Lanes<W>>& arms,
-                        const ContactBlock<D, W>& block, typename ContactBlock<D, W>::Point& point,
-                        MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline void set_normal_impulse(const Lanes<W>& wanted,
+                                                      const Arms<D, Lanes<W>>& arms,
+                                                      const ContactBlock<D, W>& block,
+                                                      typename ContactBlock<D, W>::Point& point,
+                                                      MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   const Lanes<W> accumulated = max(wanted, Lanes<W>(0.0f));
   const Lanes<W> applied = accumulated - point.normal_impulse;
   point.normal_impulse = accumulated;
@@ -278,9 +287,10 @@ void set_normal_impulse(const Lanes<W>& wanted, const Arms<D, Lanes<W>>& arms,
 
 /// The normal row: 0 <= normal impulse.
 template <int D, int W>
-void solve_normal(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
-                  typename ContactBlock<D, W>::Point& point, MotionLanes<D, W>& a,
-                  MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline void solve_normal(const StepContext<D>& context, Sweep sweep,
+                                                ContactBlock<D, W>& block,
+                                                typename ContactBlock<D, W>::Point& point,
+                                                MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   const Arms<D, L> arms = arms_of(block, point, a, b);
   const L speed = relative_speed(block.normal, arms, a, b);

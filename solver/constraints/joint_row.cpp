@@ -8,10 +8,13 @@ static void factor_block(int begin, int end, JointRow<D>& joint,
                          BlockFactor<JointRow<D>::kRows>& block) {
   constexpr int kRows = JointRow<D>::kRows;
   float k[kRows][kRows];
-  for (int i = begin; i < end; ++i)
-    for (int j = begin; j <= i; ++j)
-      k[i - begin][j - begin] = row_coupling(joint, joint.rows.rows[static_cast<std::size_t>(i)],
-                                             joint.rows.rows[static_cast<std::size_t>(j)]);
+  for (int j = begin; j < end; ++j) {
+    const RowResponse<D> response =
+        response_to(joint, joint.rows.rows[static_cast<std::size_t>(j)]);
+    for (int i = j; i < end; ++i)
+      k[i - begin][j - begin] =
+          row_coupling(joint.rows.rows[static_cast<std::size_t>(i)], response);
+  }
   block.factor(k, end - begin);
 }
 
@@ -19,11 +22,12 @@ static void factor_block(int begin, int end, JointRow<D>& joint,
 template <int D>
 static HeldRow<D> hold_block(const JointRow<D>& joint, const Row<D>& row) {
   HeldRow<D> held{};
-  const float k = row_coupling(joint, row, row);
+  const RowResponse<D> response = response_to(joint, row);
+  const float k = row_coupling(row, response);
   const int count = joint.rows.split;
   float across[JointRow<D>::kRows];
   for (int i = 0; i < count; ++i) {
-    across[i] = row_coupling(joint, joint.rows.rows[static_cast<std::size_t>(i)], row);
+    across[i] = row_coupling(joint.rows.rows[static_cast<std::size_t>(i)], response);
     held.reaction[i] = across[i];
   }
   joint.blocks[0].solve(held.reaction, count);

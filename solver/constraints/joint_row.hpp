@@ -75,7 +75,32 @@ float row_speed(const Row<D>& row, const Motion<D>& a, const Motion<D>& b) {
          (dot(row.linear_b, b.velocity) + dot(row.angular_b, b.spin)) + row.rate;
 }
 
-/// v += M^-1 J^T lambda.
+/// J^T lambda of several rows: what they push both bodies with, N s and N m s.
+template <int D>
+struct PairImpulse {
+  Vec<D> linear_a = Vec<D>::zero();
+  Spin<D> angular_a = Spin<D>::zero();
+  Vec<D> linear_b = Vec<D>::zero();
+  Spin<D> angular_b = Spin<D>::zero();
+
+  void add(const Row<D>& row, float impulse) {
+    linear_a += impulse * row.linear_a;
+    angular_a += impulse * row.angular_a;
+    linear_b += impulse * row.linear_b;
+    angular_b += impulse * row.angular_b;
+  }
+};
+
+/// v += M^-1 J^T lambda: the inertia is met once, however many rows push.
+template <int D>
+void apply(const JointRow<D>& joint, const PairImpulse<D>& impulse, Motion<D>& a, Motion<D>& b) {
+  a.velocity += joint.mass_a.inverse_mass * impulse.linear_a;
+  a.spin += joint.mass_a.inverse_inertia * impulse.angular_a;
+  b.velocity += joint.mass_b.inverse_mass * impulse.linear_b;
+  b.spin += joint.mass_b.inverse_inertia * impulse.angular_b;
+}
+
+/// The same of one row.
 template <int D>
 void apply_row(const JointRow<D>& joint, const Row<D>& row, float impulse, Motion<D>& a,
                Motion<D>& b) {
@@ -89,21 +114,36 @@ void apply_row(const JointRow<D>& joint, const Row<D>& row, float impulse, Motio
 template <int D>
 void apply_held(JointRow<D>& joint, const Row<D>& row, const HeldRow<D>& held, float impulse,
                 Motion<D>& a, Motion<D>& b) {
-  apply_row(joint, row, impulse, a, b);
+  PairImpulse<D> sum;
+  sum.add(row, impulse);
   for (int i = 0; i < joint.rows.split; ++i) {
     const float change = -held.reaction[i] * impulse;
-    apply_row(joint, joint.rows.rows[static_cast<std::size_t>(i)], change, a, b);
+    sum.add(joint.rows.rows[static_cast<std::size_t>(i)], change);
     joint.impulse[i] += change;
   }
+  apply(joint, sum, a, b);
+}
+
+/// M^-1 J^T of one row: how both bodies answer to it.
+template <int D>
+struct RowResponse {
+  Vec<D> linear_a;
+  Spin<D> angular_a;
+  Vec<D> linear_b;
+  Spin<D> angular_b;
+};
+
+template <int D>
+RowResponse<D> response_to(const JointRow<D>& joint, const Row<D>& row) {
+  return {joint.mass_a.inverse_mass * row.linear_a, joint.mass_a.inverse_inertia * row.angular_a,
+          joint.mass_b.inverse_mass * row.linear_b, joint.mass_b.inverse_inertia * row.angular_b};
 }
 
 /// J_i M^-1 J_j^T.
 template <int D>
-float row_coupling(const JointRow<D>& joint, const Row<D>& i, const Row<D>& j) {
-  return (joint.mass_a.inverse_mass * dot(i.linear_a, j.linear_a) +
-          dot(i.angular_a, joint.mass_a.inverse_inertia * j.angular_a)) +
-         (joint.mass_b.inverse_mass * dot(i.linear_b, j.linear_b) +
-          dot(i.angular_b, joint.mass_b.inverse_inertia * j.angular_b));
+float row_coupling(const Row<D>& i, const RowResponse<D>& j) {
+  return (dot(i.linear_a, j.linear_a) + dot(i.angular_a, j.angular_a)) +
+         (dot(i.linear_b, j.linear_b) + dot(i.angular_b, j.angular_b));
 }
 
 /// Joints of the plane have no cone; these let the kernel say so at no cost.

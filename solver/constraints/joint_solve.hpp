@@ -6,20 +6,22 @@ namespace cycloid::solver {
 
 /// The one kernel of all joints: whatever the kind, its rows are solved as written here.
 
-inline void warm_start_cone(const JointRow<2>&, Motion<2>&, Motion<2>&) {}
-inline void warm_start_cone(const JointRow<3>& row, Motion<3>& a, Motion<3>& b) {
-  if (has_cone(row)) apply_row(row, row.rows.cone_axis, -row.cone_impulse, a, b);
+inline void add_cone_impulse(const JointRow<2>&, PairImpulse<2>&) {}
+inline void add_cone_impulse(const JointRow<3>& row, PairImpulse<3>& sum) {
+  if (has_cone(row)) sum.add(row.rows.cone_axis, -row.cone_impulse);
 }
 
 template <int D>
 void warm_start(const JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+  PairImpulse<D> sum;
   for (int i = 0; i < row.rows.count; ++i)
-    apply_row(row, row.rows.rows[static_cast<std::size_t>(i)], row.impulse[i], a, b);
-  if (!row.rows.has_axis) return;
-  apply_row(row, row.rows.axis, row.spring_impulse + row.lower_impulse - row.upper_impulse, a, b);
-  apply_row(row, row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis, row.motor_impulse,
-            a, b);
-  warm_start_cone(row, a, b);
+    sum.add(row.rows.rows[static_cast<std::size_t>(i)], row.impulse[i]);
+  if (row.rows.has_axis) {
+    sum.add(row.rows.axis, row.spring_impulse + row.lower_impulse - row.upper_impulse);
+    sum.add(row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis, row.motor_impulse);
+    add_cone_impulse(row, sum);
+  }
+  apply(row, sum, a, b);
 }
 
 /// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale lambda over the equalities
@@ -52,12 +54,14 @@ void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow
   }
   const float bound = row.impulse_max[index];
   const float scale = size > bound * bound ? bound / sqrt(size) : 1.0f;
+  PairImpulse<D> sum;
   for (int i = 0; i < count; ++i) {
     const float accumulated = scale * change[i];
-    apply_row(row, row.rows.rows[static_cast<std::size_t>(begin + i)],
-              accumulated - row.impulse[begin + i], a, b);
+    sum.add(row.rows.rows[static_cast<std::size_t>(begin + i)],
+            accumulated - row.impulse[begin + i]);
     row.impulse[begin + i] = accumulated;
   }
+  apply(row, sum, a, b);
 }
 
 /// Spring, motor and position motor: |lambda| <= bound.

@@ -34,7 +34,8 @@ struct MotionColumns {
 };
 
 template <int D, int W>
-MotionLanes<D, W> gather(std::span<const Motion<D>> motions, const LaneIndices<W>& bodies) {
+[[gnu::always_inline]] inline MotionLanes<D, W> gather(std::span<const Motion<D>> motions,
+                                                       const LaneIndices<W>& bodies) {
   MotionColumns<D, W> columns;
   for (int lane = 0; lane < W; ++lane) {
     float row[MotionColumns<D, W>::kUsed];
@@ -53,8 +54,9 @@ MotionLanes<D, W> gather(std::span<const Motion<D>> motions, const LaneIndices<W
 /// Writes velocity and spin back, but only to bodies with mass: a body without mass may stand in
 /// many lanes at once, and nothing changes it.
 template <int D, int W>
-void scatter(const MotionLanes<D, W>& lanes, const LaneMass<D, W>& mass,
-             const LaneIndices<W>& bodies, std::span<Motion<D>> motions) {
+[[gnu::always_inline]] inline void scatter(const MotionLanes<D, W>& lanes,
+                                           const LaneMass<D, W>& mass, const LaneIndices<W>& bodies,
+                                           std::span<Motion<D>> motions) {
   float velocity[D][W];
   float spin[Dim<D>::kSpin][W];
   float inverse_mass[W];
@@ -99,7 +101,8 @@ void turn_lanes(const Vec<S, L>& turn, Vec<N, L>& q) {
 }
 
 template <int D, int W>
-Spin<D, Lanes<W>> turned_by(const LaneMass<D, W>& mass, const Spin<D, Lanes<W>>& moment_of) {
+[[gnu::always_inline]] inline Spin<D, Lanes<W>> turned_by(const LaneMass<D, W>& mass,
+                                                          const Spin<D, Lanes<W>>& moment_of) {
   constexpr int kSpin = Dim<D>::kSpin;
   Spin<D, Lanes<W>> result;
   for (int i = 0; i < kSpin; ++i) {
@@ -112,8 +115,10 @@ Spin<D, Lanes<W>> turned_by(const LaneMass<D, W>& mass, const Spin<D, Lanes<W>>&
 
 /// v += m^-1 P,  w += I^-1 (r x P).
 template <int D, int W>
-void apply_impulse(const Vec<D, Lanes<W>>& impulse, const Vec<D, Lanes<W>>& r,
-                   const LaneMass<D, W>& mass, MotionLanes<D, W>& motion) {
+[[gnu::always_inline]] inline void apply_impulse(const Vec<D, Lanes<W>>& impulse,
+                                                 const Vec<D, Lanes<W>>& r,
+                                                 const LaneMass<D, W>& mass,
+                                                 MotionLanes<D, W>& motion) {
   motion.velocity += mass.inverse_mass * impulse;
   motion.spin += turned_by<D, W>(mass, moment(r, impulse));
 }

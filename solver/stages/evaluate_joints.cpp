@@ -20,8 +20,8 @@ static void drive_target(const Joint<D>& joint, float time_s, JointRow<D>& row) 
 
 /// C, J and K^-1 of every joint at the present poses: wherever positions have moved since.
 ///
-/// Reads joints, poses and deltas; writes joint_rows, each its own, so any split into ranges gives
-/// the same bits.
+/// Reads joints, poses, deltas and masses; writes joint_rows, each its own, so any split into
+/// ranges gives the same bits.
 template <int D>
 void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
                      StepScratch<D>& scratch) {
@@ -30,6 +30,8 @@ void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
          ++i) {
       JointRow<D>& row = scratch.joint_rows[i];
       drive_target(state.joints[row.joint], time_s, row);
+      row.mass_a = scratch.masses[row.body_a];
+      row.mass_b = scratch.masses[row.body_b];
       evaluate_rows(state, time_s, scratch.motions[row.body_a], scratch.motions[row.body_b], row);
     }
   });

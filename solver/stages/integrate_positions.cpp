@@ -47,10 +47,25 @@ static void turn_freely(float h, const Body<3>& body, Motion<3>& motion) {
   motion.spin = rotate(rotation_by(turn_in_world), motion.spin) + rotate(after, change_after(turn));
 }
 
+static bool turn_inertia(float, const Body<2>&, const Motion<2>&, BodyMass<2>&) {
+  return false;
+}
+/// The inverse inertia in the world at the present rotation, where that has changed by more than a
+/// thousandth of a radian in this substep. Kept for a whole tick it would turn a top's joint force
+/// into spin about its own axis: at 60 rad/s a tick is one radian.
+static bool turn_inertia(float h, const Body<3>& body, const Motion<3>& motion, BodyMass<3>& mass) {
+  constexpr float kTurnMin = 1.0e-3f;
+  if (body.inverse_inertia.m[0] == 0.0f || is_round(body.inertia)) return false;
+  if (h * h * dot(motion.spin, motion.spin) <= kTurnMin * kTurnMin) return false;
+  mass.inverse_inertia =
+      world_inertia(body.inverse_inertia, compose(motion.delta_rotation, body.rotation));
+  return true;
+}
+
 /// x' = x + h v,  q' = exp(h w) q, at unit length; in space I(q') w' = I(q) w.
 ///
 /// Reads each motion's velocity and spin, and its pseudo-velocity where there are any; writes its
-/// deltas. Any split into ranges gives the same bits.
+/// deltas, and its inverse inertia in the world. Any split into ranges gives the same bits.
 template <int D>
 void integrate_positions(const StepContext<D>& context, const WorldState<D>& state,
                          Workers& workers, StepScratch<D>& scratch) {
@@ -62,6 +77,8 @@ void integrate_positions(const StepContext<D>& context, const WorldState<D>& sta
       Motion<D>& motion = scratch.motions[i];
       motion.delta_position += context.h * motion.velocity;
       turn_freely(context.h, state.bodies[i], motion);
+      const bool turned = turn_inertia(context.h, state.bodies[i], motion, scratch.masses[i]);
+      scratch.inertia_turned[i] = turned ? 1 : 0;
       if (!pseudo) continue;
       motion.delta_position += context.h * scratch.saved_motions[i].velocity;
       turn_by(context.h * scratch.saved_motions[i].spin, motion);

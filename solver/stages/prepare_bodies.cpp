@@ -14,6 +14,7 @@ void prepare_bodies(const WorldState<D>& state, Workers& workers, StepScratch<D>
   scratch.motions[count] = Motion<D>{};
   scratch.motions[count].delta_rotation = identity_rotation<D>();
   scratch.masses[count] = BodyMass<D>{};
+  scratch.inertia_turned.assign(count + 1, 0);
   workers.parallel_for(static_cast<int>(count), kBodyGrain, [&](Range range) {
     for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
          ++i) {

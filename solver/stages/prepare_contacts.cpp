@@ -1,3 +1,4 @@
+#include "solver/constraints/contact_lanes.hpp"
 #include "solver/constraints/contact_rolling.hpp"
 #include "solver/stages/stages.hpp"
 
@@ -41,60 +42,22 @@ static ContactNumbers<D> numbers_of(const StepContext<D>& context, const WorldSt
           both_move ? context.contact : context.contact_static};
 }
 
-template <int W>
-static void set_lane(Lanes<W>& lanes, int lane, float value) {
-  float values[W];
-  lanes.store(values);
-  values[lane] = value;
-  lanes = Lanes<W>::load(values);
-}
-template <int N, int W>
-static void set_lane(Vec<N, Lanes<W>>& lanes, int lane, const Vec<N>& value) {
-  for (int i = 0; i < N; ++i) set_lane(lanes[i], lane, value[i]);
-}
-
-template <int D, int W>
-static void set_mass(LaneMass<D, W>& lanes, int lane, const BodyMass<D>& mass) {
-  set_lane(lanes.inverse_mass, lane, mass.inverse_mass);
-  for (int i = 0; i < Dim<D>::kSpin * Dim<D>::kSpin; ++i)
-    set_lane(lanes.inverse_inertia[i], lane, mass.inverse_inertia.m[i]);
-}
-
-/// (J M^-1 J^T)^-1 of a row along `direction`; 0 where nothing moves.
-template <int D>
-static float effective_mass(const BodyMass<D>& a, const BodyMass<D>& b, const Vec<D>& r_a,
-                            const Vec<D>& r_b, const Vec<D>& direction) {
-  const Spin<D> turn_a = moment(r_a, direction);
-  const Spin<D> turn_b = moment(r_b, direction);
-  const float k = a.inverse_mass + b.inverse_mass + dot(turn_a, a.inverse_inertia * turn_a) +
-                  dot(turn_b, b.inverse_inertia * turn_b);
-  return k > 0.0f ? 1.0f / k : 0.0f;
-}
-
 template <int D>
 struct PointInput {
   const ManifoldPoint<D>& geometry;
   const ContactPoint<D>& impulses;
-  const BodyMass<D>& mass_a;
-  const BodyMass<D>& mass_b;
   float warm_starting;
 };
 
 template <int D, int W>
-static void set_point(typename ContactBlock<D, W>::Point& point, int lane, const Vec<D>& normal,
+static void set_point(typename ContactBlock<D, W>::Point& point, int lane,
                       const PointInput<D>& in) {
-  const Vec<D>& r_a = in.geometry.anchor_a;
-  const Vec<D>& r_b = in.geometry.anchor_b;
-  set_lane(point.r_a, lane, r_a);
-  set_lane(point.r_b, lane, r_b);
+  set_lane(point.r_a, lane, in.geometry.anchor_a);
+  set_lane(point.r_b, lane, in.geometry.anchor_b);
   set_lane(point.separation, lane, in.geometry.separation);
-  set_lane(point.normal_mass, lane, effective_mass(in.mass_a, in.mass_b, r_a, r_b, normal));
+  set_lane(point.normal_mass, lane, 1.0f);
   set_lane(point.normal_impulse, lane, in.warm_starting * in.impulses.normal_impulse);
-  Vec<D> tangent[Dim<D>::kTangents];
-  tangents(normal, tangent);
   for (int t = 0; t < Dim<D>::kTangents; ++t) {
-    set_lane(point.tangent_mass[t], lane,
-             effective_mass(in.mass_a, in.mass_b, r_a, r_b, tangent[t]));
     set_lane(point.tangent_impulse[t], lane, in.warm_starting * in.impulses.tangent_impulse[t]);
   }
 }
@@ -151,9 +114,6 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   set_mass(block.mass_a, lane, mass_a);
   set_mass(block.mass_b, lane, mass_b);
   set_lane(block.normal, lane, manifold.normal);
-  Vec<D> tangent[Dim<D>::kTangents];
-  tangents(manifold.normal, tangent);
-  for (int t = 0; t < Dim<D>::kTangents; ++t) set_lane(block.tangent[t], lane, tangent[t]);
   set_lane(block.share_b, lane, mass_b.inverse_mass / (mass_a.inverse_mass + mass_b.inverse_mass));
   set_lane(block.friction, lane, numbers.friction);
   set_lane(block.restitution, lane, numbers.restitution);
@@ -173,19 +133,17 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   set_lane(block.impulse_scale, lane, numbers.softness.impulse_scale);
   if (contact.point_count > block.point_count) block.point_count = contact.point_count;
   for (std::uint32_t p = 0; p < contact.point_count; ++p) {
-    const PointInput<D> in{manifold.points[p], contact.points[p], mass_a, mass_b,
-                           context.tuning.warm_starting};
-    set_point<D, W>(block.points[p], lane, manifold.normal, in);
+    const PointInput<D> in{manifold.points[p], contact.points[p], context.tuning.warm_starting};
+    set_point<D, W>(block.points[p], lane, in);
   }
 }
 
 template <int D, int W>
-static ContactBlock<D, W> empty_block(std::uint32_t resting_body) {
-  ContactBlock<D, W> block{};
+static void clear(std::uint32_t resting_body, ContactBlock<D, W>& block) {
+  block = ContactBlock<D, W>{};
   block.body_a.fill(resting_body);
   block.body_b.fill(resting_body);
   block.contact.fill(kNone);
-  return block;
 }
 
 /// Which contacts of the colouring's order a block holds.
@@ -215,10 +173,12 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
   out.blocks.resize(static_cast<std::size_t>(out.overflow.end));
   const auto fill = [&](int block, Range members) {
     auto& into = out.blocks[static_cast<std::size_t>(block)];
-    into = empty_block<D, W>(resting);
+    clear(resting, into);
     for (int i = members.begin; i < members.end; ++i)
       set_contact(context, state, scratch, coloring.order[static_cast<std::size_t>(i)],
                   i - members.begin, into);
+    tangents(into.normal, into.tangent);
+    set_effective_masses(Lanes<W>(1.0f), into);
   };
   for (std::size_t c = 0; c < out.colors.size(); ++c) {
     const Range color = out.colors[c];

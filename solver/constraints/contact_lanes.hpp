@@ -1,0 +1,62 @@
+#pragma once
+
+#include <cstring>
+
+#include "solver/constraints/contact.hpp"
+
+namespace cycloid::solver {
+
+/// Writing single lanes of a contact block, and what follows from them for all lanes at once.
+
+template <int W>
+void set_lane(Lanes<W>& lanes, int lane, float value) {
+  // One float in memory: to load and store the whole vector would cost a fifth of a step in space.
+  std::memcpy(reinterpret_cast<std::byte*>(&lanes.raw) + sizeof value * static_cast<unsigned>(lane),
+              &value, sizeof value);
+}
+template <int N, int W>
+void set_lane(Vec<N, Lanes<W>>& lanes, int lane, const Vec<N>& value) {
+  for (int i = 0; i < N; ++i) set_lane(lanes[i], lane, value[i]);
+}
+
+template <int D, int W>
+void set_mass(LaneMass<D, W>& lanes, int lane, const BodyMass<D>& mass) {
+  set_lane(lanes.inverse_mass, lane, mass.inverse_mass);
+  for (int i = 0; i < Dim<D>::kSpin * Dim<D>::kSpin; ++i)
+    set_lane(lanes.inverse_inertia[i], lane, mass.inverse_inertia.m[i]);
+}
+
+/// (J M^-1 J^T)^-1 of a row along `direction`; 0 where nothing moves.
+template <int D, int W>
+Lanes<W> effective_mass(const ContactBlock<D, W>& block, const Vec<D, Lanes<W>>& r_a,
+                        const Vec<D, Lanes<W>>& r_b, const Vec<D, Lanes<W>>& direction) {
+  using L = Lanes<W>;
+  L k = block.mass_a.inverse_mass + block.mass_b.inverse_mass;
+  if (block.turns) {
+    const Spin<D, L> turn_a = moment(r_a, direction);
+    const Spin<D, L> turn_b = moment(r_b, direction);
+    k = k + dot(turn_a, turned_by<D, W>(block.mass_a, turn_a)) +
+        dot(turn_b, turned_by<D, W>(block.mass_b, turn_b));
+  }
+  const auto moves = k > L(0.0f);
+  return select(moves, L(1.0f) / select(moves, k, L(1.0f)), L(0.0f));
+}
+
+/// Effective masses of every point in the lanes where `wanted` is not 0; 0 where a lane has no such
+/// point. @pre normal_mass is above 0 where it has one.
+template <int D, int W>
+void set_effective_masses(const Lanes<W>& wanted, ContactBlock<D, W>& block) {
+  using L = Lanes<W>;
+  for (std::uint32_t p = 0; p < block.point_count; ++p) {
+    auto& point = block.points[p];
+    const auto exists = point.normal_mass > L(0.0f);
+    const auto set = [&](const Vec<D, L>& direction, L& mass) {
+      const L now = select(exists, effective_mass(block, point.r_a, point.r_b, direction), L(0.0f));
+      mass = select(wanted > L(0.0f), now, mass);
+    };
+    for (int t = 0; t < Dim<D>::kTangents; ++t) set(block.tangent[t], point.tangent_mass[t]);
+    set(block.normal, point.normal_mass);
+  }
+}
+
+}  // namespace cycloid::solver
