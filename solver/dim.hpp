@@ -130,6 +130,24 @@ template <class T>
   return rotate(Vec<4, T>{{-q[0], -q[1], -q[2], q[3]}}, r);
 }
 
+/// Where a rotation takes the unit vectors: the columns of its matrix.
+template <class T>
+void rotated_axes(const Vec<2, T>& q, Vec<2, T> (&axes)[2]) {
+  axes[0] = {{q[0], q[1]}};
+  axes[1] = {{-q[1], q[0]}};
+}
+template <class T>
+void rotated_axes(const Vec<4, T>& q, Vec<3, T> (&axes)[3]) {
+  const T one = T(1.0f);
+  const T two = T(2.0f);
+  axes[0] = {{one - two * (q[1] * q[1] + q[2] * q[2]), two * (q[0] * q[1] + q[3] * q[2]),
+              two * (q[0] * q[2] - q[3] * q[1])}};
+  axes[1] = {{two * (q[0] * q[1] - q[3] * q[2]), one - two * (q[0] * q[0] + q[2] * q[2]),
+              two * (q[1] * q[2] + q[3] * q[0])}};
+  axes[2] = {{two * (q[0] * q[2] + q[3] * q[1]), two * (q[1] * q[2] - q[3] * q[0]),
+              one - two * (q[0] * q[0] + q[1] * q[1])}};
+}
+
 /// The rotation `a` after the rotation `b`.
 template <class T>
 [[gnu::always_inline]] inline Vec<2, T> compose(const Vec<2, T>& a, const Vec<2, T>& b) {

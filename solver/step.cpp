@@ -6,18 +6,23 @@
 
 namespace cycloid::solver {
 
+/// All that depends on where the bodies are now, and on the time.
+template <int D, int W>
+static void evaluate(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                     Workers& workers, StepScratch<D>& scratch) {
+  evaluate_contacts<D, W>(workers, scratch);
+  evaluate_joints(state, time_s, workers, scratch);
+  factor_trees(context, scratch);
+}
+
 /// The velocity methods: impulses first, then positions by velocities, then what the method does
-/// about the errors that are left.
+/// about the errors that are left. @pre rows are those of the present poses; so they are after it.
 template <int D, int W>
 static void solve_substep(const StepContext<D>& context, const WorldState<D>& state, float time_s,
                           Workers& workers, StepScratch<D>& scratch) {
   const Tuning& tuning = context.tuning;
   integrate_velocities(context, state, workers, scratch);
-  evaluate_contacts<D, W>(workers, scratch);
   bounce_contacts<D, W>(context, workers, scratch);
-  // Errors of the poses before this substep are measured against the targets of that time.
-  evaluate_joints(state, time_s - context.h, workers, scratch);
-  factor_trees(context, scratch);
   warm_start_constraints<D, W>(workers, scratch);
   for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep)
     solve_constraints<D, W>(context, Sweep::kBiased, workers, scratch);
@@ -27,11 +32,7 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
   if (tuning.stabilisation == Stabilisation::kNgs)
     for (std::uint32_t sweep = 0; sweep < tuning.position_sweeps; ++sweep)
       correct_positions<D, W>(context, state, time_s, workers, scratch);
-  if (tuning.relax_sweeps > 0) {
-    evaluate_contacts<D, W>(workers, scratch);
-    evaluate_joints(state, time_s, workers, scratch);
-    factor_trees(context, scratch);
-  }
+  evaluate<D, W>(context, state, time_s, workers, scratch);
   for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep)
     solve_constraints<D, W>(context, Sweep::kRelax, workers, scratch);
 }
@@ -47,6 +48,8 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   prepare_contacts<D, W>(context, state, workers, scratch);
 
   const float start_s = static_cast<float>(state.header.tick) * context.tick_s;
+  if (context.tuning.stabilisation != Stabilisation::kXpbd)
+    evaluate<D, W>(context, state, start_s, workers, scratch);
   for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
     const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
     if (context.tuning.stabilisation == Stabilisation::kXpbd)

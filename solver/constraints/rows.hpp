@@ -129,12 +129,10 @@ inline void directions_across(const JointFrame<3>& frame, Vec<3> (&out)[2]) {
 /// along axes of the world they would act |C| apart.
 template <int D>
 void append_point_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
-  for (int i = 0; i < D; ++i) {
-    Vec<D> e = Vec<D>::zero();
-    e[i] = 1.0f;
-    rows.rows[static_cast<std::size_t>(rows.count++)] =
-        translation_row(frame, rotate(frame.rotation_a, e));
-  }
+  Vec<D> axes[D];
+  rotated_axes(frame.rotation_a, axes);
+  for (const Vec<D>& axis : axes)
+    rows.rows[static_cast<std::size_t>(rows.count++)] = translation_row(frame, axis);
 }
 
 /// The rotation of b relative to a since creation as a vector in the world frame, rad: exact in the
