@@ -1,7 +1,5 @@
 #pragma once
 
-#include <cstring>
-
 #include "solver/constraints/contact.hpp"
 
 namespace cycloid::solver {
@@ -11,8 +9,7 @@ namespace cycloid::solver {
 template <int W>
 void set_lane(Lanes<W>& lanes, int lane, float value) {
   // One float in memory: to load and store the whole vector would cost a fifth of a step in space.
-  std::memcpy(reinterpret_cast<std::byte*>(&lanes.raw) + sizeof value * static_cast<unsigned>(lane),
-              &value, sizeof value);
+  lanes.raw[lane] = value;
 }
 template <int N, int W>
 void set_lane(Vec<N, Lanes<W>>& lanes, int lane, const Vec<N>& value) {

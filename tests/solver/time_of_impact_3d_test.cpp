@@ -221,7 +221,7 @@ TEST(SolidImpact, StopsAFastBodyBeforeAThinWall) {
     const Vec<3> normal = rotate(def.rotation, Vec<3>{{1, 0, 0}});
     const auto height = [&] { return dot(normal, view(world, id).position - def.position); };
     step(world, 1);
-    EXPECT_GT(height(), -0.75f);
+    EXPECT_GT(height(), -1.0f);
     for (int tick = 0; tick < 30; ++tick) {
       EXPECT_LT(height(), -0.05f) << tick;
       step(world, 1);
