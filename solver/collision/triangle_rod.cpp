@@ -56,6 +56,7 @@ struct WayOut {
 static WayOut way_out(const Solid& triangle, const Rod& rod) {
   const Vec<3> along = rod.to - rod.from;
   WayOut best;
+  float refused = best.separation;
   for (std::uint32_t i = 0; i < 3; ++i) {
     const Vec<3> origin = triangle.vertices[i];
     const std::uint32_t next = next_corner(i);
@@ -67,12 +68,14 @@ static WayOut way_out(const Solid& triangle, const Rod& rod) {
     const bool turned = dot(axis, triangle.vertices[next_corner(next)] - origin) > 0.0f;
     const Vec<3> normal = ((turned ? -1.0f : 1.0f) / sqrt(square)) * axis;
     const float separation = dot(normal, rod.from - origin);
-    if (separation <= best.separation) continue;
-    if (dot(normal, triangle.normals[0]) < -kFlat) continue;
-    if (leaning_of(triangle, 1u << i, normal) != Leaning::kAllowed) continue;
+    const bool allowed = dot(normal, triangle.normals[0]) >= -kFlat &&
+                         leaning_of(triangle, 1u << i, normal) == Leaning::kAllowed;
+    if (!allowed) refused = max(refused, separation);
+    if (!allowed || separation <= best.separation) continue;
     best = {i, separation, normal};
   }
-  return best;
+  // Along an axis that is not the shallowest of all the edge and the rod need not meet.
+  return refused > best.separation ? WayOut{} : best;
 }
 
 /// The rod's axis goes through the triangle: the shallowest way out to the free side.
