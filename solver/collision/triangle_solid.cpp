@@ -1,26 +1,25 @@
 #include "solver/collision/rod.hpp"
 #include "solver/collision/triangle.hpp"
-#include "solver/collision/triangle_clip.hpp"
+#include "solver/collision/triangle_contact.hpp"
 
 namespace cycloid::solver {
-
-/// Which features meet: the triangle's face, a face of the solid, or an edge of each.
-struct Contacting {
-  enum Kind { kOwnFace, kSolidFace, kEdges } kind = kOwnFace;
-  Vec<3> normal;  ///< From the triangle to the solid.
-  float separation = 0.0f;
-  std::uint32_t face = 0;
-  std::uint32_t triangle_edge = 0;
-  std::uint32_t solid_edge = 0;
-  float own_separation = 0.0f;  ///< Along the triangle's normal, m.
-  float refused = -3.0e38f;     ///< Along the best axis that is a neighbour's, m.
-  float flat = -3.0e38f;        ///< Along the best axis over an edge that is not convex, m.
-};
 
 /// How much farther apart than the best so far an axis has to be to take its place, m, so that
 /// what rests does not change its axis from tick to tick.
 static float preference(const Solid& solid) {
   return 1.0e-4f * length(solid.vertices[0] - solid.centre);
+}
+
+static std::uint32_t lowest_corner(const Solid& solid, const Vec<3>& normal) {
+  std::uint32_t lowest = 0;
+  float least = dot(normal, solid.vertices[0]);
+  for (std::uint32_t i = 1; i < solid.vertex_count; ++i) {
+    const float height = dot(normal, solid.vertices[i]);
+    if (height >= least) continue;
+    least = height;
+    lowest = i;
+  }
+  return lowest;
 }
 
 static std::uint32_t farthest_corner(const Solid& triangle, const Vec<3>& direction) {
@@ -62,6 +61,7 @@ static bool survey_faces(const Solid& triangle, const Solid& solid, float margin
     best.normal = normal;
     best.separation = separation;
     best.face = f;
+    best.lowest = corner;
   }
   return true;
 }
@@ -110,65 +110,6 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
   return true;
 }
 
-/// The corners of a clipped polygon as points against a face that looks along `normal`. The
-/// polygon is of the other shape.
-static void add_polygon(const Polygon& polygon, const Vec<3>& normal, const Vec<3>& on_face,
-                        std::uint32_t face, bool on_b, const Vec<3>& a_to_b, float margin,
-                        Manifold<3>& manifold) {
-  std::array<Candidate, Polygon::kCornersMax> found;
-  std::size_t count = 0;
-  for (std::uint32_t i = 0; i < polygon.count; ++i) {
-    const float height = dot(normal, polygon.corners[i] - on_face);
-    if (height > margin) continue;
-    const std::uint32_t before = polygon.labels[i == 0 ? polygon.count - 1 : i - 1];
-    found[count++] = {polygon.corners[i] - (0.5f * height) * normal, height,
-                      clip_feature(on_b, face, before, polygon.labels[i])};
-  }
-  reduce(std::span<const Candidate>(found).first(count), a_to_b, manifold);
-}
-
-/// The face that looks most against `normal`; of equal ones the first.
-static std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal) {
-  std::uint32_t best = 0;
-  float least = dot(solid.normals[0], normal);
-  for (std::uint32_t f = 1; f < solid.face_count; ++f) {
-    const float along = dot(solid.normals[f], normal);
-    if (along < least) {
-      least = along;
-      best = f;
-    }
-  }
-  return best;
-}
-
-static void add_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
-                        const Vec<3>& a_to_b, float margin, Manifold<3>& manifold) {
-  manifold.normal = best.normal;
-  const float slack = 1.0e-5f * length(solid.vertices[0] - solid.centre);
-  Polygon polygon;
-  if (best.kind == Contacting::kOwnFace) {
-    const std::uint32_t face = opposed_face(solid, best.normal);
-    face_polygon(solid, face, polygon);
-    clip_polygon(triangle, 0, slack, polygon);
-    add_polygon(polygon, best.normal, triangle.vertices[0], face, false, a_to_b, margin, manifold);
-  } else if (best.kind == Contacting::kSolidFace) {
-    face_polygon(triangle, 0, polygon);
-    clip_polygon(solid, best.face, slack, polygon);
-    const Vec<3> on_face = solid.vertices[solid.edges[solid.faces[best.face].edge].origin];
-    add_polygon(polygon, solid.normals[best.face], on_face, best.face, true, a_to_b, margin,
-                manifold);
-  } else {
-    const PolyhedronEdge& half = solid.edges[best.solid_edge];
-    const std::uint32_t next = best.triangle_edge == 2 ? 0 : best.triangle_edge + 1;
-    const Vec<3> from = solid.vertices[half.origin];
-    const Vec<3> to = solid.vertices[solid.edges[half.twin].origin];
-    const SegmentPair pair =
-        nearest_points(triangle.vertices[best.triangle_edge], triangle.vertices[next], from, to);
-    add_point(0.5f * (pair.on_a + pair.on_b), best.separation,
-              edge_feature(best.solid_edge) | (best.triangle_edge << 20), a_to_b, manifold);
-  }
-}
-
 /// Whether the triangle's own normal would push a solid far out over an edge that it only grazes
 /// from beside: a box against a step does not jump onto it. Where the surface is fine and round,
 /// both ways are about as long, and the own normal is right.
@@ -185,24 +126,24 @@ Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, co
   Contacting best;
   best.normal = triangle.normals[0];
   if (dot(best.normal, solid.centre - triangle.vertices[0]) < 0.0f) return {};
-  best.separation = 3.0e38f;
-  for (std::uint32_t i = 0; i < solid.vertex_count; ++i)
-    best.separation =
-        min(best.separation, dot(best.normal, solid.vertices[i] - triangle.vertices[0]));
+  best.lowest = lowest_corner(solid, best.normal);
+  best.separation = dot(best.normal, solid.vertices[best.lowest] - triangle.vertices[0]);
   if (best.separation > margin) return {};
   best.own_separation = best.separation;
+  const std::uint32_t lowest = best.lowest;
   if (!survey_faces(triangle, solid, margin, best)) return {};
   if (!survey_edges(triangle, solid, margin, best)) return {};
   // A pair of edges that is not the best of all axes need not meet at all.
-  if (best.kind == Contacting::kEdges && max(best.refused, best.flat) > best.separation) {
+  const float other = max(best.refused, best.flat);
+  if (best.kind == Contacting::kEdges && other > best.separation) {
     best.kind = Contacting::kOwnFace;
     best.normal = triangle.normals[0];
     best.separation = best.own_separation;
+    best.lowest = lowest;
   }
-  if (is_another_s(best, preference(solid))) return {};
-  Manifold<3> manifold;
-  add_contact(triangle, solid, best, a_to_b, margin, manifold);
-  return manifold;
+  const float preferred = preference(solid);
+  if (is_another_s(best, preferred)) return {};
+  return triangle_contact(triangle, solid, best, preferred, a_to_b, margin);
 }
 
 }  // namespace cycloid::solver
