@@ -88,57 +88,65 @@ static NearestEdges nearest_edges(const Solid& triangle, const Solid& solid) {
   return nearest;
 }
 
+/// How far the solid is from the triangle along a direction, m.
+static float gap_along(const Solid& triangle, const Solid& solid, const Vec<3>& direction) {
+  const Vec<3> origin = triangle.vertices[0];
+  float low = dot(direction, solid.vertices[0] - origin);
+  for (std::uint32_t i = 1; i < solid.vertex_count; ++i)
+    low = min(low, dot(direction, solid.vertices[i] - origin));
+  return low - max(0.0f, max(dot(direction, triangle.vertices[1] - origin),
+                             dot(direction, triangle.vertices[2] - origin)));
+}
+
 /// Of solids apart: one point, on the axis along which they are farther apart, the best one or the
 /// line between the nearest points.
-static Manifold<3> touch_nearest(const Solid& triangle, const Solid& solid, const Contacting& best,
-                                 const Vec<3>& a_to_b, float margin) {
-  const NearestEdges nearest = nearest_edges(triangle, solid);
+static TriangleContact touch_nearest(const Solid& triangle, const Solid& solid,
+                                     const NearestEdges& nearest, const Contacting& best,
+                                     float preferred, const Vec<3>& a_to_b, float margin) {
   const SegmentPair& pair = nearest.pair;
-  if (pair.distance > margin) return {};
+  if (pair.distance > margin) return {{}, true};
   std::uint32_t edges = 1u << nearest.edge;
   if (pair.fraction_a == 0.0f) edges = edges_at(nearest.edge);
   if (pair.fraction_a == 1.0f) edges = edges_at(next_corner(nearest.edge));
   const Vec<3> between = pair.on_b - pair.on_a;
   const Vec<3> line = normalized_or(between, best.normal);
-  if (dot(line, triangle.normals[0]) < -kFlat) return {};
-  if (leaning_of(triangle, edges, line) != Leaning::kAllowed) return {};
-  float low = dot(line, solid.vertices[0] - pair.on_a);
-  for (std::uint32_t i = 1; i < solid.vertex_count; ++i)
-    low = min(low, dot(line, solid.vertices[i] - pair.on_a));
-  float high = 0.0f;
-  for (const std::uint32_t i : {0u, 1u, 2u})
-    high = max(high, dot(line, triangle.vertices[i] - pair.on_a));
-  const float gap = low - high;
-  if (max(gap, best.separation) < 0.0f) return {};
-  Manifold<3> manifold;
-  manifold.normal = gap > best.separation ? line : best.normal;
-  add_point(pair.on_a + 0.5f * between, max(gap, best.separation), kNearest, a_to_b, manifold);
-  return manifold;
+  if (dot(line, triangle.normals[0]) < -kFlat) return {{}, true};
+  if (leaning_of(triangle, edges, line) != Leaning::kAllowed) return {{}, true};
+  const float gap = gap_along(triangle, solid, line);
+  if (max(gap, best.separation) < 0.0f) return {{}, true};
+  TriangleContact contact;
+  contact.manifold.normal = gap > best.separation ? line : best.normal;
+  add_point(pair.on_a + 0.5f * between, max(gap, best.separation), kNearest, a_to_b,
+            contact.manifold);
+  contact.complete = gap >= pair.distance - preferred;
+  return contact;
 }
 
-static Manifold<3> touch_edges(const Solid& triangle, const Solid& solid, const Contacting& best,
-                               float preferred, const Vec<3>& a_to_b, float margin) {
+static TriangleContact touch_edges(const Solid& triangle, const Solid& solid,
+                                   const Contacting& best, float preferred, const Vec<3>& a_to_b,
+                                   float margin) {
   const Vec<3> from = solid.vertices[solid.edges[best.solid_edge].origin];
   const Vec<3> to = solid.vertices[solid.edges[best.solid_edge + 1].origin];
   const SegmentPair pair =
       nearest_points(triangle.vertices[best.triangle_edge],
                      triangle.vertices[next_corner(best.triangle_edge)], from, to);
-  if (best.separation > 0.0f && pair.distance > best.separation + preferred)
-    return touch_nearest(triangle, solid, best, a_to_b, margin);
-  Manifold<3> manifold;
-  manifold.normal = best.normal;
+  const bool meet = pair.distance <= abs(best.separation) + preferred;
+  if (best.separation > 0.0f && !meet)
+    return touch_nearest(triangle, solid, nearest_edges(triangle, solid), best, preferred, a_to_b,
+                         margin);
+  TriangleContact contact;
+  contact.manifold.normal = best.normal;
   add_point(0.5f * (pair.on_a + pair.on_b), best.separation,
-            kEdges | best.solid_edge | (best.triangle_edge << 20), a_to_b, manifold);
-  return manifold;
+            kEdges | best.solid_edge | (best.triangle_edge << 20), a_to_b, contact.manifold);
+  contact.complete = meet;
+  return contact;
 }
 
-Manifold<3> triangle_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
-                             float preferred, const Vec<3>& a_to_b, float margin) {
-  const bool apart = max(best.separation, max(best.refused, best.flat)) > 0.0f;
-  if (apart && best.separation < 0.0f) return touch_nearest(triangle, solid, best, a_to_b, margin);
-  if (best.kind == Contacting::kEdges)
-    return touch_edges(triangle, solid, best, preferred, a_to_b, margin);
-  const float slack = 1.0e-5f * length(solid.vertices[0] - solid.centre);
+static TriangleContact touch_faces(const Solid& triangle, const Solid& solid,
+                                   const Contacting& best, const Judgement& judgement,
+                                   const Vec<3>& a_to_b, float margin) {
+  const float size = length(solid.vertices[0] - solid.centre);
+  const float slack = judgement.strict ? 2.0f * judgement.preferred : 1.0e-5f * size;
   const bool own = best.kind == Contacting::kOwnFace;
   const Solid& reference = own ? triangle : solid;
   const Solid& other = own ? solid : triangle;
@@ -150,18 +158,36 @@ Manifold<3> triangle_contact(const Solid& triangle, const Solid& solid, const Co
   clip_polygon(reference, face, slack, polygon);
   Heights heights{reference.normals[face], on_face, own ? incident : face, !own, margin, {}};
   heights.add(polygon);
-  if (heights.lowest > best.separation + preferred) {
+  bool complete = true;
+  if (heights.lowest > best.separation + judgement.preferred) {
     const Vec<3> corner = other.vertices[best.lowest];
     if (is_over(reference, face, corner, slack)) {
       heights.add(corner, best.lowest, kCorner);
-    } else if (apart) {
-      return touch_nearest(triangle, solid, best, a_to_b, margin);
+    } else if (max(best.separation, best.elsewhere()) > 0.0f) {
+      const NearestEdges nearest = nearest_edges(triangle, solid);
+      if (nearest.pair.distance < heights.lowest - judgement.preferred)
+        return touch_nearest(triangle, solid, nearest, best, judgement.preferred, a_to_b, margin);
+    } else {
+      complete = own && heights.count > 0;
     }
   }
-  Manifold<3> manifold;
-  manifold.normal = best.normal;
-  reduce(std::span<const Candidate>(heights.found).first(heights.count), a_to_b, manifold);
-  return manifold;
+  TriangleContact contact;
+  contact.manifold.normal = best.normal;
+  contact.complete = complete;
+  reduce(std::span<const Candidate>(heights.found).first(heights.count), a_to_b, contact.manifold);
+  return contact;
+}
+
+TriangleContact triangle_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
+                                 const Judgement& judgement, const Vec<3>& a_to_b, float margin) {
+  const float preferred = judgement.preferred;
+  // Apart along another axis, so they do not overlap, however deep one is behind the other's face.
+  if (best.separation < 0.0f && best.elsewhere() > 0.0f)
+    return touch_nearest(triangle, solid, nearest_edges(triangle, solid), best, preferred, a_to_b,
+                         margin);
+  if (best.kind == Contacting::kEdges)
+    return touch_edges(triangle, solid, best, preferred, a_to_b, margin);
+  return touch_faces(triangle, solid, best, judgement, a_to_b, margin);
 }
 
 }  // namespace cycloid::solver

@@ -13,18 +13,32 @@ struct Contacting {
   std::uint32_t face = 0;
   std::uint32_t triangle_edge = 0;
   std::uint32_t solid_edge = 0;
-  std::uint32_t lowest = 0;     ///< The solid's corner that is lowest over the triangle.
-  float own_separation = 0.0f;  ///< Along the triangle's normal, m.
-  float refused = -3.0e38f;     ///< Along the best axis that is a neighbour's, m.
-  float flat = -3.0e38f;        ///< Along the best axis over an edge that is not convex, m.
+  std::uint32_t lowest = 0;  ///< The solid's corner that is lowest over the triangle.
+  float refused = -3.0e38f;  ///< Along the best axis that is a neighbour's, m.
+  float flat = -3.0e38f;     ///< Along the best axis over an edge that is not convex, m.
+  float upright = -3.0e38f;  ///< Along the best axis that the triangle's normal stands for, m.
+
+  /// Along the best axis that cannot be taken, m.
+  float elsewhere() const { return max(refused, flat); }
+};
+
+/// How differences of separations are judged, m.
+struct Judgement {
+  bool strict;      ///< The axis has been taken for the least difference, however upright it is.
+  float preferred;  ///< Differences below this do not count.
+};
+
+/// A manifold, and whether it is as deep, or as near, as the axis says, or has to be so.
+struct TriangleContact {
+  Manifold<3> manifold;
+  bool complete;
 };
 
 /// The manifold of the features: what is clipped, and of solids that overlap also the corner that
 /// is deepest, where the clipped face does not have it; two edges meet in one point. Of solids
 /// apart whose nearest features are others it is one point between those, where the surface allows
 /// the line between them as a normal.
-/// @param preferred  Differences of separations below this do not count, m.
-Manifold<3> triangle_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
-                             float preferred, const Vec<3>& a_to_b, float margin);
+TriangleContact triangle_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
+                                 const Judgement& judgement, const Vec<3>& a_to_b, float margin);
 
 }  // namespace cycloid::solver

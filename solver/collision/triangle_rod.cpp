@@ -143,10 +143,8 @@ Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Ve
     return manifold;
   }
   // Behind the triangle as a whole, or a part of what goes through its neighbour.
-  if (behind &&
-      (max(from, to) <= 0.0f || leaves_over_neighbour(triangle, rod, span, to > from))) {
-    if (0.5f * (from + to) >= sunk)
-      add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
+  if (behind && (max(from, to) <= 0.0f || leaves_over_neighbour(triangle, rod, span, to > from))) {
+    if (0.5f * (from + to) >= sunk) add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
     return manifold;
   }
 
@@ -157,10 +155,10 @@ Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Ve
   const float upwards = dot(normal, triangle.normals[0]);
   // A rod across an edge where the surface goes on flat is over both triangles; so is, by a
   // rounding, one that lies on the triangle and sticks out over its edge.
-  const bool lies_flat = upwards > kLiesFlat &&
-                         heights.low <= nearest.pair.distance + 1.0e-4f * rod.radius;
-  const bool barely_behind = behind && upwards < -kFlat && heights.low >= sunk &&
-                             0.5f * (from + to) >= sunk;
+  const bool lies_flat =
+      upwards > kLiesFlat && heights.low <= nearest.pair.distance + 1.0e-4f * rod.radius;
+  const bool barely_behind =
+      behind && upwards < -kFlat && heights.low >= sunk && 0.5f * (from + to) >= sunk;
   if (over && (barely_behind || (!behind && (lies_flat || leaning == Leaning::kOwnOnly)))) {
     add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
     return manifold;

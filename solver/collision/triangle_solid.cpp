@@ -32,9 +32,12 @@ static std::uint32_t farthest_corner(const Solid& triangle, const Vec<3>& direct
 /// Whether an axis may take the place of the best one. Where it is better, but beyond a convex
 /// neighbour's normal or behind the triangle, notes that: others have to make the contact.
 static bool takes_over(const Solid& triangle, std::uint32_t edges, const Vec<3>& normal,
-                       float separation, Contacting& best) {
+                       float separation, bool strict, Contacting& best) {
   const float along = dot(normal, triangle.normals[0]);
-  if (along > kLiesFlat) return false;
+  if (along > kLiesFlat && !strict) {
+    best.upright = max(best.upright, separation);
+    return false;
+  }
   const Leaning leaning = leaning_of(triangle, edges, normal);
   if (leaning == Leaning::kOwnOnly) {
     best.flat = max(best.flat, separation);
@@ -46,9 +49,9 @@ static bool takes_over(const Solid& triangle, std::uint32_t edges, const Vec<3>&
 }
 
 /// False where a face of the solid separates by more than the margin.
-static bool survey_faces(const Solid& triangle, const Solid& solid, float margin,
-                         Contacting& best) {
-  const float preferred = preference(solid);
+static bool survey_faces(const Solid& triangle, const Solid& solid, const Judgement& judgement,
+                         float margin, Contacting& best) {
+  const float preferred = judgement.strict ? 0.0f : judgement.preferred;
   for (std::uint32_t f = 0; f < solid.face_count; ++f) {
     const Vec<3> on_face = solid.vertices[solid.edges[solid.faces[f].edge].origin];
     const Vec<3> normal = -solid.normals[f];
@@ -56,7 +59,8 @@ static bool survey_faces(const Solid& triangle, const Solid& solid, float margin
     const float separation = dot(normal, on_face - triangle.vertices[corner]);
     if (separation > margin) return false;
     if (separation <= best.separation + preferred) continue;
-    if (!takes_over(triangle, edges_at(corner), normal, separation, best)) continue;
+    if (!takes_over(triangle, edges_at(corner), normal, separation, judgement.strict, best))
+      continue;
     best.kind = Contacting::kSolidFace;
     best.normal = normal;
     best.separation = separation;
@@ -70,10 +74,10 @@ static bool survey_faces(const Solid& triangle, const Solid& solid, float margin
 /// behind the axis, and so does the triangle. False where a pair separates by more than the margin.
 /// Source: Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013); of a triangle
 /// the arc of an edge's normals is half a circle.
-static bool survey_edges(const Solid& triangle, const Solid& solid, float margin,
-                         Contacting& best) {
+static bool survey_edges(const Solid& triangle, const Solid& solid, const Judgement& judgement,
+                         float margin, Contacting& best) {
   const Vec<3> own = triangle.normals[0];
-  const float preferred = preference(solid);
+  const float preferred = judgement.strict ? 0.0f : judgement.preferred;
   Vec<3> sides[3];
   std::array<float, kHullFacesMax> turns[3];
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -99,7 +103,7 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
       if (separation > margin) return false;
       if (separation <= best.separation + preferred) continue;
       const Vec<3> normal = scale * axis;
-      if (!takes_over(triangle, 1u << i, normal, separation, best)) continue;
+      if (!takes_over(triangle, 1u << i, normal, separation, judgement.strict, best)) continue;
       best.kind = Contacting::kEdges;
       best.normal = normal;
       best.separation = separation;
@@ -119,31 +123,47 @@ static bool is_another_s(const Contacting& best, float preferred) {
   return -best.separation > 4.0f * max(-best.refused, 0.0f) + preferred;
 }
 
+/// The best axis from a start at the triangle's own normal. False: apart by more than the margin.
+static bool survey(const Solid& triangle, const Solid& solid, const Judgement& judgement,
+                   float margin, Contacting& best) {
+  const Contacting own = best;
+  if (!survey_faces(triangle, solid, judgement, margin, best)) return false;
+  if (!survey_edges(triangle, solid, judgement, margin, best)) return false;
+  // A pair of edges that is not the best of all axes need not meet at all.
+  const float better = max(best.elsewhere(), best.upright);
+  if (best.kind != Contacting::kEdges || better <= best.separation) return true;
+  best.kind = own.kind;
+  best.normal = own.normal;
+  best.separation = own.separation;
+  best.lowest = own.lowest;
+  return true;
+}
+
 /// A solid is met from the free side, by a rule without memory: its centre must not lie behind the
 /// triangle's plane, so what is pushed out is sunk by less than half of its extent.
 Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, const Vec<3>& a_to_b,
                                    float margin) {
-  Contacting best;
-  best.normal = triangle.normals[0];
-  if (dot(best.normal, solid.centre - triangle.vertices[0]) < 0.0f) return {};
-  best.lowest = lowest_corner(solid, best.normal);
-  best.separation = dot(best.normal, solid.vertices[best.lowest] - triangle.vertices[0]);
-  if (best.separation > margin) return {};
-  best.own_separation = best.separation;
-  const std::uint32_t lowest = best.lowest;
-  if (!survey_faces(triangle, solid, margin, best)) return {};
-  if (!survey_edges(triangle, solid, margin, best)) return {};
-  // A pair of edges that is not the best of all axes need not meet at all.
-  const float other = max(best.refused, best.flat);
-  if (best.kind == Contacting::kEdges && other > best.separation) {
-    best.kind = Contacting::kOwnFace;
-    best.normal = triangle.normals[0];
-    best.separation = best.own_separation;
-    best.lowest = lowest;
-  }
-  const float preferred = preference(solid);
-  if (is_another_s(best, preferred)) return {};
-  return triangle_contact(triangle, solid, best, preferred, a_to_b, margin);
+  Contacting own;
+  own.normal = triangle.normals[0];
+  if (dot(own.normal, solid.centre - triangle.vertices[0]) < 0.0f) return {};
+  own.lowest = lowest_corner(solid, own.normal);
+  own.separation = dot(own.normal, solid.vertices[own.lowest] - triangle.vertices[0]);
+  if (own.separation > margin) return {};
+
+  Judgement judgement = {false, preference(solid)};
+  Contacting best = own;
+  if (!survey(triangle, solid, judgement, margin, best)) return {};
+  if (is_another_s(best, judgement.preferred)) return {};
+  const TriangleContact first = triangle_contact(triangle, solid, best, judgement, a_to_b, margin);
+  if (first.complete) return first.manifold;
+
+  // An axis that is almost the best, and was taken since it changes less from tick to tick, need
+  // not be one along which anything meets.
+  judgement.strict = true;
+  best = own;
+  if (!survey(triangle, solid, judgement, margin, best)) return {};
+  const TriangleContact again = triangle_contact(triangle, solid, best, judgement, a_to_b, margin);
+  return again.manifold.point_count > 0 ? again.manifold : first.manifold;
 }
 
 }  // namespace cycloid::solver
