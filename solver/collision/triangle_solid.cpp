@@ -120,7 +120,7 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, const Judgem
 static bool is_another_s(const Contacting& best, float preferred) {
   if (best.kind != Contacting::kOwnFace || best.refused <= best.separation + preferred)
     return false;
-  return -best.separation > 4.0f * max(-best.refused, 0.0f) + preferred;
+  return best.refused <= 0.0f && -best.separation > -4.0f * best.refused + preferred;
 }
 
 /// The best axis from a start at the triangle's own normal. False: apart by more than the margin.
