@@ -68,17 +68,21 @@ static bool is_over(const Solid& solid, std::uint32_t face, const Vec<3>& point,
   return true;
 }
 
-/// The nearest points of any two edges of the triangle and the solid, and the triangle's edge.
+/// The nearest points of any two edges of the triangle and the solid that are no farther apart than
+/// the margin, and the triangle's edge.
 struct NearestEdges {
   SegmentPair pair;
   std::uint32_t edge = 0;
 };
-static NearestEdges nearest_edges(const Solid& triangle, const Solid& solid) {
+static NearestEdges nearest_edges(const Solid& triangle, const Solid& solid, float margin) {
   NearestEdges nearest;
   nearest.pair.distance = 3.0e38f;
   for (std::uint32_t e = 0; e < solid.edge_count; e += 2) {
     const Vec<3> from = solid.vertices[solid.edges[e].origin];
     const Vec<3> to = solid.vertices[solid.edges[e + 1].origin];
+    const float height = min(dot(triangle.normals[0], from - triangle.vertices[0]),
+                             dot(triangle.normals[0], to - triangle.vertices[0]));
+    if (height > margin) continue;
     for (std::uint32_t i = 0; i < 3; ++i) {
       const SegmentPair pair =
           nearest_points(triangle.vertices[i], triangle.vertices[next_corner(i)], from, to);
@@ -132,8 +136,8 @@ static TriangleContact touch_edges(const Solid& triangle, const Solid& solid,
                      triangle.vertices[next_corner(best.triangle_edge)], from, to);
   const bool meet = pair.distance <= abs(best.separation) + preferred;
   if (best.separation > 0.0f && !meet)
-    return touch_nearest(triangle, solid, nearest_edges(triangle, solid), best, preferred, a_to_b,
-                         margin);
+    return touch_nearest(triangle, solid, nearest_edges(triangle, solid, margin), best, preferred,
+                         a_to_b, margin);
   TriangleContact contact;
   contact.manifold.normal = best.normal;
   add_point(0.5f * (pair.on_a + pair.on_b), best.separation,
@@ -164,7 +168,7 @@ static TriangleContact touch_faces(const Solid& triangle, const Solid& solid,
     if (is_over(reference, face, corner, slack)) {
       heights.add(corner, best.lowest, kCorner);
     } else if (max(best.separation, best.elsewhere()) > 0.0f) {
-      const NearestEdges nearest = nearest_edges(triangle, solid);
+      const NearestEdges nearest = nearest_edges(triangle, solid, margin);
       if (nearest.pair.distance < heights.lowest - judgement.preferred)
         return touch_nearest(triangle, solid, nearest, best, judgement.preferred, a_to_b, margin);
     } else {
@@ -183,8 +187,8 @@ TriangleContact triangle_contact(const Solid& triangle, const Solid& solid, cons
   const float preferred = judgement.preferred;
   // Apart along another axis, so they do not overlap, however deep one is behind the other's face.
   if (best.separation < 0.0f && best.elsewhere() > 0.0f)
-    return touch_nearest(triangle, solid, nearest_edges(triangle, solid), best, preferred, a_to_b,
-                         margin);
+    return touch_nearest(triangle, solid, nearest_edges(triangle, solid, margin), best, preferred,
+                         a_to_b, margin);
   if (best.kind == Contacting::kEdges)
     return touch_edges(triangle, solid, best, preferred, a_to_b, margin);
   return touch_faces(triangle, solid, best, judgement, a_to_b, margin);

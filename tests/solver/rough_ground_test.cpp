@@ -100,6 +100,7 @@ struct Ride {
   float way = 0.0f;        ///< m.
   float clearance = 1.0f;  ///< The least, m.
   float kick = 0.0f;       ///< The most kinetic energy won in a tick, but for what gravity does, J.
+  float shift = 0.0f;      ///< The farthest moved in a tick but by its velocity, m.
   float most = 0.0f;       ///< Energy, J.
   float start = 0.0f;      ///< Energy, J.
 };
@@ -125,6 +126,8 @@ static Ride drop(const Dropped& dropped, const Vec<3>& velocity, float turn, flo
     step(world, 1);
     ride.way += length(body.position - before.position);
     ride.clearance = std::min(ride.clearance, clearance(view(world, id), dropped.points));
+    const Vec<3> moved = (0.5f / 60.0f) * (before.velocity + body.velocity);
+    ride.shift = std::max(ride.shift, length(body.position - before.position - moved));
     const float fallen = -0.5f * (before.velocity[1] + body.velocity[1]) / 60.0f;
     ride.kick = std::max(
         ride.kick, kinetic_energy(body) - kinetic_energy(before) - body.mass * 10.0f * fallen);
@@ -145,6 +148,7 @@ TEST(RoughGround, NothingFallsThroughItOrIsKickedByItsEdges) {
                        std::to_string(turn) + " speed " + std::to_string(speed));
           EXPECT_GT(ride.clearance, -0.02f);
           EXPECT_LT(ride.kick, 0.002f * ride.start);
+          EXPECT_LT(ride.shift, 0.07f);
           EXPECT_LT(ride.most, 1.01f * ride.start);
           EXPECT_GT(ride.way, 0.3f + 0.1f * speed);
         }
