@@ -2,12 +2,6 @@
 
 namespace cycloid::solver {
 
-struct FaceAxis {
-  std::uint32_t face = 0;
-  std::uint32_t support = 0;  ///< The other's vertex that is deepest below the face.
-  float separation = kNoSeparation;
-};
-
 /// The face of a that b is farthest outside of. A face is given up at the first vertex of b that
 /// shows that it cannot win; the vertex that was deepest last is tried first.
 static FaceAxis best_face(const Solid& a, const Solid& b, const AxisTolerance& tolerance,
@@ -82,13 +76,6 @@ static bool arcs_cross(const Arc& a, const Arc& b) {
   return from_a * to_a < 0.0f && from_b * to_a < 0.0f;
 }
 
-struct EdgeAxis {
-  std::uint32_t edge_a = 0;
-  std::uint32_t edge_b = 0;
-  float separation = kNoSeparation;
-  Vec<3> normal;
-};
-
 /// Edges that are parallel within 1e-3 rad have no axis.
 static constexpr float kParallelSquared = 1.0e-6f;
 
@@ -124,28 +111,34 @@ static float size_of(const Solid& solid) {
   return length(solid.vertices[0] - solid.centre);
 }
 
-/// Axes in the order: faces of a, faces of b, edges of a across edges of b, a's first; a later one
-/// has to be better by AxisTolerance. Source: Gregorius, "The Separating Axis Test between Convex
-/// Polyhedra" (GDC 2013).
-Manifold<3> solid_against_solid(const Solid& a, const Solid& b, const Vec<3>& a_to_b,
-                                float margin) {
-  const AxisTolerance tolerance(min(size_of(a), size_of(b)));
-  const FaceAxis face_a = best_face(a, b, tolerance, margin);
-  if (face_a.separation > margin) return {};
-  const FaceAxis face_b = best_face(b, a, tolerance, margin);
-  if (face_b.separation > margin) return {};
-  const bool on_b = face_b.separation > tolerance.beyond(face_a.separation);
-  const FaceAxis& face = on_b ? face_b : face_a;
+bool find_axes(const Solid& a, const Solid& b, const AxisTolerance& tolerance, float margin,
+               Axes& axes) {
+  axes.faces[0] = best_face(a, b, tolerance, margin);
+  if (axes.faces[0].separation > margin) return false;
+  axes.faces[1] = best_face(b, a, tolerance, margin);
+  if (axes.faces[1].separation > margin) return false;
+  const FaceAxis& face = axes.faces[axes.on_b(tolerance) ? 1 : 0];
   const float threshold = tolerance.beyond_faces(face.separation);
   Edges edges_a;
   Edges edges_b;
-  promising_edges(a, b, face_a.support, threshold, edges_a);
-  if (edges_a.count > 0) promising_edges(b, a, face_b.support, threshold, edges_b);
-  const EdgeAxis edges = best_edges(a, edges_a, b, edges_b, tolerance, threshold);
-  if (edges.separation > margin) return {};
+  promising_edges(a, b, axes.faces[0].support, threshold, edges_a);
+  if (edges_a.count > 0) promising_edges(b, a, axes.faces[1].support, threshold, edges_b);
+  axes.edges = best_edges(a, edges_a, b, edges_b, tolerance, threshold);
+  return axes.edges.separation <= margin;
+}
+
+/// Source: Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013).
+Manifold<3> solid_against_solid(const Solid& a, const Solid& b, const Vec<3>& a_to_b,
+                                float margin) {
+  const AxisTolerance tolerance(min(size_of(a), size_of(b)));
+  Axes axes;
+  if (!find_axes(a, b, tolerance, margin, axes)) return {};
+  const EdgeAxis& edges = axes.edges;
   if (edges.separation > kNoSeparation)
-    return touch_edges({a, b, edges.edge_a, edges.edge_b, edges.normal, edges.separation}, a_to_b,
-                       margin);
+    return touch_edges({a, b, edges.edge_a, edges.edge_b, edges.normal, edges.separation},
+                       tolerance, a_to_b, margin);
+  const bool on_b = axes.on_b(tolerance);
+  const FaceAxis& face = axes.faces[on_b ? 1 : 0];
   return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, a_to_b, margin);
 }
 
