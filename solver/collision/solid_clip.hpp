@@ -22,10 +22,12 @@ struct AxisTolerance {
         face_of_depth(1.0e-3f),
         edge_of_depth(2.0e-2f) {}
 
+  /// How far points may be from where an exact axis says they are, m.
+  float slack() const { return 0.2f * face; }
   /// The separation that a face, or an edge pair after an edge pair, has to exceed.
-  float beyond(float best) const { return best + face + face_of_depth * abs(best); }
+  float beyond(float best) const { return best + face + face_of_depth * max(-best, 0.0f); }
   /// The separation that the first edge pair has to exceed.
-  float beyond_faces(float best) const { return best + edge + edge_of_depth * abs(best); }
+  float beyond_faces(float best) const { return best + edge + edge_of_depth * max(-best, 0.0f); }
 };
 
 /// Lower than any separation, and finite with a tolerance added.

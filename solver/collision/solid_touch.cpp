@@ -50,7 +50,7 @@ static Manifold<3> touch_nearest(const Solid& a, const Solid& b, const Nearest& 
   if (nearest.of_face)
     clip_faces(opposed_to(a, b, nearest.face, nearest.on_b_face, nearest.separation), margin,
                clipped);
-  if (clipped.lowest > nearest.separation + tolerance.face)
+  if (clipped.count == 0 || clipped.lowest > nearest.separation + tolerance.face)
     add_nearest(nearest, nearest.normal, margin, clipped);
   Manifold<3> manifold;
   manifold.normal = nearest.normal;
@@ -75,8 +75,8 @@ Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, co
       const Solid& a = pair.on_b ? pair.incident : pair.reference;
       const Solid& b = pair.on_b ? pair.reference : pair.incident;
       Nearest nearest;
-      if (!nearest_of(a, b, tolerance.face, margin, nearest)) return {};
-      if (clipped.lowest > nearest.separation + tolerance.face) {
+      if (!nearest_of(a, b, tolerance.slack(), margin, nearest)) return {};
+      if (clipped.count == 0 || clipped.lowest > nearest.separation + tolerance.face) {
         const float aside = length(cross(normal, nearest.normal)) * abs(nearest.separation);
         if (clipped.count == 0 || aside > tolerance.edge)
           return touch_nearest(a, b, nearest, tolerance, a_to_b, margin);
@@ -101,7 +101,7 @@ Manifold<3> touch_edges(const EdgePair& pair, const AxisTolerance& tolerance, co
   // Where the nearest points do not lie within the edges, others are nearer or deeper.
   if (length(between - pair.separation * pair.normal) > 1.0e-4f) {
     Nearest nearest;
-    if (!nearest_of(a, b, tolerance.face, margin, nearest)) return {};
+    if (!nearest_of(a, b, tolerance.slack(), margin, nearest)) return {};
     return touch_nearest(a, b, nearest, tolerance, a_to_b, margin);
   }
   Manifold<3> manifold;
