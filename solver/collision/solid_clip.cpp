@@ -94,7 +94,8 @@ FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_
 }
 
 /// How much of the slop a face's corner bears: a point within the slop of both sides of a sharp
-/// corner may be far from it. The share of the corner where half-edge i of the face starts.
+/// corner may be far from it. shares[i]: of the corner where edge i of the face starts; one more
+/// for the end of the last.
 static void share_slop(const Solid& solid, std::uint32_t face, float* shares) {
   const std::uint32_t first = solid.faces[face].edge;
   const Vec<3>* corner = &solid.vertices[solid.edges[first].origin];
@@ -106,9 +107,11 @@ static void share_slop(const Solid& solid, std::uint32_t face, float* shares) {
     float share = 1.0f;
     if (dot(before, along) < 0.0f)
       share = length(cross(before, along)) / sqrt(dot(before, before) * dot(along, along));
-    const bool around = edge == first;
-    shares[around ? 0 : i] = share;
-    if (around) return;
+    shares[i] = share;
+    if (edge == first) {
+      shares[0] = share;
+      return;
+    }
     before = along;
     edge = solid.edges[edge].next;
   }
@@ -125,7 +128,7 @@ void clip_faces(const FacePair& pair, float margin, Clipped& clipped) {
   std::uint32_t edge = first;
   const Vec<3> origin = reference.vertices[reference.edges[first].origin];
   Vec<3> from = origin;
-  float shares[kHullVerticesMax];
+  float shares[kHullVerticesMax + 1];
   const bool square = reference.kind == ShapeKind::kBox;
   if (!square) share_slop(reference, pair.reference_face, shares);
   std::uint32_t i = 0;
@@ -135,9 +138,8 @@ void clip_faces(const FacePair& pair, float margin, Clipped& clipped) {
     const Vec<3> along = to - from;
     const float run = length(along);
     float slop = run * min(5.0e-4f, 1.0e-2f * run);
-    const std::uint32_t j = next == first ? 0 : i + 1;
-    if (!square) slop *= min(shares[i], shares[j]);
-    i = j;
+    if (!square) slop *= min(shares[i], shares[i + 1]);
+    ++i;
     const ClipPlane plane = {cross(along, normal), from, slop, edge >> 1};
     if (cut(*polygon, plane, *spare)) std::swap(polygon, spare);
     from = to;

@@ -119,15 +119,15 @@ bool faces_point(const Solid& solid, std::uint32_t face, const Vec<3>& point);
 
 /// Where two solids are nearest to each other, or deepest in each other.
 struct Nearest {
-  Vec<3> normal;             ///< From a to b, unit.
-  float separation;          ///< Along it, m.
-  std::uint32_t count;       ///< Of the points: two are the ends of what parallel edges share.
+  Vec<3> normal;        ///< From a to b, unit.
+  float separation;     ///< Along it, m.
+  std::uint32_t count;  ///< Of the points: two are the ends of what parallel edges share.
   Vec<3> on_a[2];
   Vec<3> on_b[2];
   std::uint32_t feature[2];
-  bool of_face;              ///< The axis is that of a face:
-  bool on_b_face;            ///< of b, or of a;
-  std::uint32_t face;        ///< this one.
+  bool of_face;        ///< The axis is that of a face:
+  bool on_b_face;      ///< of b, or of a;
+  std::uint32_t face;  ///< this one.
 };
 
 /// Prefers no axis. @param slack  how far [m] points may be from where the axis says they are: it

@@ -49,7 +49,7 @@ struct NearestEdges {
 /// The nearest points of any two edges, if they are no farther apart than `margin`: these lie
 /// within the margin less the separation of the planes that bound the solids along the axis.
 static NearestEdges nearest_edges(const Solid& a, const Solid& b, const Separation& axis,
-                                 float margin) {
+                                  float margin) {
   const float depth = margin - axis.separation;
   Edges edges_a;
   Edges edges_b;
@@ -152,8 +152,7 @@ bool nearest_of(const Solid& a, const Solid& b, float slack, float margin, Neare
   const bool has_edges = axes.edges.separation > kNoSeparation;
   if (has_edges && points_of_edges(a, b, axes.edges, nearest) <= slack) return true;
   const bool first = axes.on_b(AxisTolerance());
-  const float best =
-      has_edges ? axes.edges.separation : axes.faces[first ? 1 : 0].separation;
+  const float best = has_edges ? axes.edges.separation : axes.faces[first ? 1 : 0].separation;
   for (const bool on_b : {first, !first}) {
     const FaceAxis& face = axes.faces[on_b ? 1 : 0];
     // Axes of solids apart that have points are equally good.

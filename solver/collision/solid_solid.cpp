@@ -1,4 +1,5 @@
 #include "solver/collision/solid_clip.hpp"
+#include "solver/lanes.hpp"
 
 namespace cycloid::solver {
 
@@ -65,15 +66,44 @@ static Arc arc_of(const Solid& solid, std::uint32_t edge) {
           origin};
 }
 
-/// Whether the arc of a crosses the arc of b turned round: whether the edges make a face of the
-/// Minkowski difference.
-static bool arcs_cross(const Arc& a, const Arc& b) {
-  const float from_b = dot(b.from, a.along);
-  const float to_b = dot(b.to, a.along);
-  if (from_b * to_b >= 0.0f) return false;
-  const float from_a = dot(a.from, b.along);
-  const float to_a = dot(a.to, b.along);
-  return from_a * to_a < 0.0f && from_b * to_a < 0.0f;
+/// Many arcs, kWide of which are tried at once.
+static constexpr int kWide = 4;
+struct WideVectors {
+  float part[3][kHullEdgesMax / 2 + kWide];
+
+  void set(std::uint32_t i, const Vec<3>& v) {
+    for (int k = 0; k < 3; ++k) part[k][i] = v[k];
+  }
+  Lanes<kWide> dot_at(std::uint32_t i, const Vec<3>& v) const {
+    return Lanes<kWide>::load(&part[0][i]) * v[0] + Lanes<kWide>::load(&part[1][i]) * v[1] +
+           Lanes<kWide>::load(&part[2][i]) * v[2];
+  }
+};
+struct Arcs {
+  WideVectors from;
+  WideVectors to;
+  WideVectors along;
+};
+static void set_arcs(const Solid& solid, const Edges& edges, Arcs& arcs) {
+  for (std::uint32_t i = 0; i < edges.count + kWide; ++i) {
+    const Vec<3> none = Vec<3>::zero();
+    const Arc arc = i < edges.count ? arc_of(solid, edges.index[i]) : Arc{none, none, none, none};
+    arcs.from.set(i, arc.from);
+    arcs.to.set(i, arc.to);
+    arcs.along.set(i, arc.along);
+  }
+}
+
+/// Below zero for each arc that, turned round, crosses that of a: whose edge makes a face of the
+/// Minkowski difference with the edge of a.
+static void try_arcs(const Arc& a, const Arcs& arcs, std::uint32_t count, float* crossing) {
+  for (std::uint32_t i = 0; i < count; i += kWide) {
+    const Lanes<kWide> from_b = arcs.from.dot_at(i, a.along);
+    const Lanes<kWide> to_b = arcs.to.dot_at(i, a.along);
+    const Lanes<kWide> from_a = arcs.along.dot_at(i, a.from);
+    const Lanes<kWide> to_a = arcs.along.dot_at(i, a.to);
+    max(max(from_b * to_b, from_a * to_a), from_b * to_a).store(crossing + i);
+  }
 }
 
 /// Edges that are parallel within 1e-3 rad have no axis.
@@ -83,12 +113,17 @@ static constexpr float kParallelSquared = 1.0e-6f;
 static EdgeAxis best_edges(const Solid& a, const Edges& edges_a, const Solid& b,
                            const Edges& edges_b, const AxisTolerance& tolerance, float threshold) {
   EdgeAxis best;
+  if (edges_a.count == 0 || edges_b.count == 0) return best;
+  Arcs arcs;
+  float crossing[kHullEdgesMax / 2 + kWide];
+  set_arcs(b, edges_b, arcs);
   for (std::uint32_t i = 0; i < edges_a.count; ++i) {
     const Arc arc_a = arc_of(a, edges_a.index[i]);
     const Vec<3> middle = arc_a.from + arc_a.to;
+    try_arcs(arc_a, arcs, edges_b.count, crossing);
     for (std::uint32_t j = 0; j < edges_b.count; ++j) {
+      if (!(crossing[j] < 0.0f)) continue;
       const Arc arc_b = arc_of(b, edges_b.index[j]);
-      if (!arcs_cross(arc_a, arc_b)) continue;
       Vec<3> across = cross(arc_a.along, arc_b.along);
       const float squared = dot(across, across);
       const float parallel =

@@ -58,34 +58,46 @@ static Manifold<3> touch_nearest(const Solid& a, const Solid& b, const Nearest& 
   return manifold;
 }
 
+/// As touch_faces where what is clipped is not as deep as the axis says. Not inlined, as it is
+/// rare.
+[[gnu::noinline]] static Manifold<3> touch_beside(const FacePair& pair,
+                                                  const AxisTolerance& tolerance,
+                                                  const Vec<3>& a_to_b, float margin,
+                                                  Clipped& clipped) {
+  const Vec<3> outwards = pair.reference.normals[pair.reference_face];
+  Manifold<3> manifold;
+  manifold.normal = pair.on_b ? -outwards : outwards;
+  const std::uint32_t corner = deepest_corner(pair);
+  const Vec<3> at = pair.incident.vertices[corner];
+  if (faces_point(pair.reference, pair.reference_face, at)) {
+    clipped.candidates[clipped.count++] = {
+        at - (0.5f * pair.separation) * outwards, pair.separation,
+        clip_feature(pair.on_b, pair.reference_face, corner, kCorner)};
+  } else {
+    const Solid& a = pair.on_b ? pair.incident : pair.reference;
+    const Solid& b = pair.on_b ? pair.reference : pair.incident;
+    Nearest nearest;
+    if (!nearest_of(a, b, tolerance.slack(), margin, nearest)) return {};
+    if (clipped.count == 0 || clipped.lowest > nearest.separation + tolerance.face) {
+      const float aside = length(cross(manifold.normal, nearest.normal)) * abs(nearest.separation);
+      if (clipped.count == 0 || aside > tolerance.edge)
+        return touch_nearest(a, b, nearest, tolerance, a_to_b, margin);
+      add_nearest(nearest, manifold.normal, margin, clipped);
+    }
+  }
+  reduce(std::span(clipped.candidates).first(clipped.count), a_to_b, manifold);
+  return manifold;
+}
+
 Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, const Vec<3>& a_to_b,
                         float margin) {
   Clipped clipped;
   clip_faces(pair, margin, clipped);
+  if (clipped.lowest > pair.separation + tolerance.face)
+    return touch_beside(pair, tolerance, a_to_b, margin, clipped);
   const Vec<3> outwards = pair.reference.normals[pair.reference_face];
-  const Vec<3> normal = pair.on_b ? -outwards : outwards;
-  if (clipped.lowest > pair.separation + tolerance.face) {
-    const std::uint32_t corner = deepest_corner(pair);
-    const Vec<3> at = pair.incident.vertices[corner];
-    if (faces_point(pair.reference, pair.reference_face, at)) {
-      clipped.candidates[clipped.count++] = {
-          at - (0.5f * pair.separation) * outwards, pair.separation,
-          clip_feature(pair.on_b, pair.reference_face, corner, kCorner)};
-    } else {
-      const Solid& a = pair.on_b ? pair.incident : pair.reference;
-      const Solid& b = pair.on_b ? pair.reference : pair.incident;
-      Nearest nearest;
-      if (!nearest_of(a, b, tolerance.slack(), margin, nearest)) return {};
-      if (clipped.count == 0 || clipped.lowest > nearest.separation + tolerance.face) {
-        const float aside = length(cross(normal, nearest.normal)) * abs(nearest.separation);
-        if (clipped.count == 0 || aside > tolerance.edge)
-          return touch_nearest(a, b, nearest, tolerance, a_to_b, margin);
-        add_nearest(nearest, normal, margin, clipped);
-      }
-    }
-  }
   Manifold<3> manifold;
-  manifold.normal = normal;
+  manifold.normal = pair.on_b ? -outwards : outwards;
   reduce(std::span(clipped.candidates).first(clipped.count), a_to_b, manifold);
   return manifold;
 }
