@@ -96,7 +96,7 @@ FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_
 /// How much of the slop a face's corner bears: a point within the slop of both sides of a sharp
 /// corner may be far from it. shares[i]: of the corner where edge i of the face starts; one more
 /// for the end of the last.
-static void share_slop(const Solid& solid, std::uint32_t face, float* shares) {
+[[gnu::noinline]] static void share_slop(const Solid& solid, std::uint32_t face, float* shares) {
   const std::uint32_t first = solid.faces[face].edge;
   const Vec<3>* corner = &solid.vertices[solid.edges[first].origin];
   std::uint32_t edge = solid.edges[first].next;
