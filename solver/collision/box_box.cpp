@@ -23,22 +23,22 @@ static Relative relative_of(const Solid& a, const Solid& b) {
 }
 
 /// The best of the six faces, three of which look at the other box.
-struct FaceAxis {
+struct BoxFaceAxis {
   std::uint32_t face = 0;
   float separation = kNoSeparation;
 };
 
 /// Faces 2 k and 2 k + 1 of a box that look along axis k, the other's centre at `offset` along it.
 static void try_face(int axis, float offset, float radius, const AxisTolerance& tolerance,
-                     FaceAxis& best) {
+                     BoxFaceAxis& best) {
   const float separation = abs(offset) - radius;
   if (separation <= tolerance.beyond(best.separation)) return;
   best = {static_cast<std::uint32_t>(2 * axis + (offset < 0.0f ? 0 : 1)), separation};
 }
 
-static FaceAxis best_face_of_a(const Solid& a, const Solid& b, const Relative& relative,
+static BoxFaceAxis best_face_of_a(const Solid& a, const Solid& b, const Relative& relative,
                                const AxisTolerance& tolerance) {
-  FaceAxis best;
+  BoxFaceAxis best;
   for (int i = 0; i < 3; ++i) {
     const float* row = relative.absolute[i];
     const float radius = a.half[i] + (b.half[0] * row[0] + b.half[1] * row[1] + b.half[2] * row[2]);
@@ -48,9 +48,9 @@ static FaceAxis best_face_of_a(const Solid& a, const Solid& b, const Relative& r
 }
 
 /// Seen from b, whose centre is then the other's: hence the minus.
-static FaceAxis best_face_of_b(const Solid& a, const Solid& b, const Relative& relative,
+static BoxFaceAxis best_face_of_b(const Solid& a, const Solid& b, const Relative& relative,
                                const AxisTolerance& tolerance) {
-  FaceAxis best;
+  BoxFaceAxis best;
   for (int j = 0; j < 3; ++j) {
     float offset = 0.0f;
     float radius = b.half[j];
@@ -64,7 +64,7 @@ static FaceAxis best_face_of_b(const Solid& a, const Solid& b, const Relative& r
 }
 
 /// The axis across axis i of a and axis j of b.
-struct EdgeAxis {
+struct CrossAxis {
   int i = 0;
   int j = 0;
   float separation = kNoSeparation;
@@ -76,9 +76,9 @@ struct EdgeAxis {
 static constexpr float kParallelSquared = 1.0e-6f;
 
 /// The first edge pair that exceeds `threshold`, and of later ones what is better beyond tolerance.
-static EdgeAxis best_edges(const Solid& a, const Solid& b, const Relative& relative,
+static CrossAxis best_edges(const Solid& a, const Solid& b, const Relative& relative,
                            const AxisTolerance& tolerance, float threshold) {
-  EdgeAxis best;
+  CrossAxis best;
   for (int i = 0; i < 3; ++i) {
     const int i1 = i == 2 ? 0 : i + 1;
     const int i2 = i == 0 ? 2 : i - 1;
@@ -114,7 +114,7 @@ static std::uint32_t edge_from(const Solid& box, std::uint32_t origin, int axis)
 }
 
 /// The edges that support both boxes along the axis: of two that do the one on the positive side.
-static EdgePair edges_on(const EdgeAxis& axis, const Solid& a, const Solid& b,
+static EdgePair edges_on(const CrossAxis& axis, const Solid& a, const Solid& b,
                          const Relative& relative) {
   const int i1 = axis.i == 2 ? 0 : axis.i + 1;
   const int i2 = axis.i == 0 ? 2 : axis.i - 1;
@@ -144,17 +144,17 @@ Manifold<3> box_against_box(const Solid& a, const Solid& b, const Vec<3>& a_to_b
   const Relative relative = relative_of(a, b);
   const AxisTolerance tolerance(
       min(min(min(a.half[0], a.half[1]), a.half[2]), min(min(b.half[0], b.half[1]), b.half[2])));
-  const FaceAxis face_a = best_face_of_a(a, b, relative, tolerance);
+  const BoxFaceAxis face_a = best_face_of_a(a, b, relative, tolerance);
   if (face_a.separation > margin) return {};
-  const FaceAxis face_b = best_face_of_b(a, b, relative, tolerance);
+  const BoxFaceAxis face_b = best_face_of_b(a, b, relative, tolerance);
   if (face_b.separation > margin) return {};
   const bool on_b = face_b.separation > tolerance.beyond(face_a.separation);
-  const FaceAxis& face = on_b ? face_b : face_a;
-  const EdgeAxis edges =
+  const BoxFaceAxis& face = on_b ? face_b : face_a;
+  const CrossAxis edges =
       best_edges(a, b, relative, tolerance, tolerance.beyond_faces(face.separation));
   if (edges.separation > margin) return {};
   if (edges.separation > kNoSeparation)
-    return touch_edges(edges_on(edges, a, b, relative), a_to_b, margin);
+    return touch_edges(edges_on(edges, a, b, relative), tolerance, a_to_b, margin);
   return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, a_to_b, margin);
 }
 

@@ -53,7 +53,7 @@ bool parallel_points(const Rod& a, const Rod& b, const Vec<3>& normal, AxisPoint
                       nearest_fraction(a.from, d1, inverse_a, b.to)};
   const float overlap = abs(s[1] - s[0]);
   if (overlap * overlap * square_a < 1.0e-4f * min(square_a, square_b)) return false;
-  const float reach = 0.1f * (a.radius + b.radius);
+  const float reach = min(0.1f * (a.radius + b.radius), 0.03f * overlap * sqrt(square_a));
   for (int k = 0; k < 2; ++k) {
     const float fraction = k == 0 ? min(s[0], s[1]) : max(s[0], s[1]);
     const Vec<3> on_a = a.from + fraction * d1;

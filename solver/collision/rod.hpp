@@ -33,7 +33,7 @@ struct AxisPoints {
 
 /// Both ends of the length along which two nearly parallel rods lie side by side, in the order of
 /// `a`. False, leaving `ends` undefined, where they are no closer to parallel than the tenth of
-/// their common radius, or overlap by less than a hundredth of the shorter one.
+/// their common radius or 0.03 of that length, or overlap by less than a hundredth of the shorter.
 bool parallel_points(const Rod& a, const Rod& b, const Vec<3>& normal, AxisPoints (&ends)[2]);
 
 /// A part of a rod, as fractions of its length; empty where from > to.

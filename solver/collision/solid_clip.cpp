@@ -93,6 +93,30 @@ FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_
           on_b,      separation};
 }
 
+/// How much of the slop a face's corner bears: a point within the slop of both sides of a sharp
+/// corner may be far from it. shares[i]: of the corner where edge i of the face starts; one more
+/// for the end of the last.
+[[gnu::noinline]] static void share_slop(const Solid& solid, std::uint32_t face, float* shares) {
+  const std::uint32_t first = solid.faces[face].edge;
+  const Vec<3>* corner = &solid.vertices[solid.edges[first].origin];
+  std::uint32_t edge = solid.edges[first].next;
+  Vec<3> before = solid.vertices[solid.edges[edge].origin] - *corner;
+  for (std::uint32_t i = 1;; ++i) {
+    corner = &solid.vertices[solid.edges[edge].origin];
+    const Vec<3> along = solid.vertices[end_of(solid, edge)] - *corner;
+    float share = 1.0f;
+    if (dot(before, along) < 0.0f)
+      share = length(cross(before, along)) / sqrt(dot(before, before) * dot(along, along));
+    shares[i] = share;
+    if (edge == first) {
+      shares[0] = share;
+      return;
+    }
+    before = along;
+    edge = solid.edges[edge].next;
+  }
+}
+
 void clip_faces(const FacePair& pair, float margin, Clipped& clipped) {
   const Solid& reference = pair.reference;
   const Vec<3> normal = reference.normals[pair.reference_face];
@@ -104,13 +128,19 @@ void clip_faces(const FacePair& pair, float margin, Clipped& clipped) {
   std::uint32_t edge = first;
   const Vec<3> origin = reference.vertices[reference.edges[first].origin];
   Vec<3> from = origin;
+  float shares[kHullVerticesMax + 1];
+  const bool square = reference.kind == ShapeKind::kBox;
+  if (!square) share_slop(reference, pair.reference_face, shares);
+  std::uint32_t i = 0;
   do {
     const std::uint32_t next = reference.edges[edge].next;
     const Vec<3> to = reference.vertices[reference.edges[next].origin];
     const Vec<3> along = to - from;
     const float run = length(along);
-    const ClipPlane plane = {cross(along, normal), from, run * min(5.0e-4f, 1.0e-2f * run),
-                             edge >> 1};
+    float slop = run * min(5.0e-4f, 1.0e-2f * run);
+    if (!square) slop *= min(shares[i], shares[i + 1]);
+    ++i;
+    const ClipPlane plane = {cross(along, normal), from, slop, edge >> 1};
     if (cut(*polygon, plane, *spare)) std::swap(polygon, spare);
     from = to;
     edge = next;
@@ -119,8 +149,8 @@ void clip_faces(const FacePair& pair, float margin, Clipped& clipped) {
   clipped.count = 0;
   clipped.lowest = 1.0e30f;
   const std::uint32_t face = clip_feature(pair.on_b, pair.reference_face, 0, 0);
-  for (std::size_t i = 0; i < polygon->count; ++i) {
-    const ClipVertex& vertex = polygon->vertices[i];
+  for (std::size_t k = 0; k < polygon->count; ++k) {
+    const ClipVertex& vertex = polygon->vertices[k];
     const float separation = dot(normal, vertex.at - origin);
     clipped.lowest = min(clipped.lowest, separation);
     if (separation > margin) continue;

@@ -168,14 +168,10 @@ static Manifold<3> inside(const Solid& solid, const Rod& rod, const Survey& surv
     return manifold;
   }
   manifold.normal = solid.normals[survey.face];
+  // The lowest end lies over the face, but for what the two kinds of axes differ by: where it does
+  // not, the way out is across the border, where the clipped rod is about as deep.
   Span span = clip_to_face(solid, survey.face, rod, slack);
-  // The lowest end lies over the face, but for what the two kinds of axes differ by.
-  if (span.from > span.to) {
-    span = {0.0f, 1.0f};
-  } else if (lowest(solid, survey.face, rod, span) > survey.face_separation + slack) {
-    const bool rises = dot(manifold.normal, rod.to - rod.from) > 0.0f;
-    (rises ? span.from : span.to) = rises ? 0.0f : 1.0f;
-  }
+  if (span.from > span.to) span = {0.0f, 1.0f};
   add_span(solid, survey.face, rod, span, a_to_b, margin, manifold);
   return manifold;
 }

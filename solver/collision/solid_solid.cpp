@@ -1,12 +1,7 @@
 #include "solver/collision/solid_clip.hpp"
+#include "solver/lanes.hpp"
 
 namespace cycloid::solver {
-
-struct FaceAxis {
-  std::uint32_t face = 0;
-  std::uint32_t support = 0;  ///< The other's vertex that is deepest below the face.
-  float separation = kNoSeparation;
-};
 
 /// The face of a that b is farthest outside of. A face is given up at the first vertex of b that
 /// shows that it cannot win; the vertex that was deepest last is tried first.
@@ -71,23 +66,45 @@ static Arc arc_of(const Solid& solid, std::uint32_t edge) {
           origin};
 }
 
-/// Whether the arc of a crosses the arc of b turned round: whether the edges make a face of the
-/// Minkowski difference.
-static bool arcs_cross(const Arc& a, const Arc& b) {
-  const float from_b = dot(b.from, a.along);
-  const float to_b = dot(b.to, a.along);
-  if (from_b * to_b >= 0.0f) return false;
-  const float from_a = dot(a.from, b.along);
-  const float to_a = dot(a.to, b.along);
-  return from_a * to_a < 0.0f && from_b * to_a < 0.0f;
+/// Many arcs, kWide of which are tried at once.
+static constexpr int kWide = 4;
+struct WideVectors {
+  float part[3][kHullEdgesMax / 2 + kWide];
+
+  void set(std::uint32_t i, const Vec<3>& v) {
+    for (int k = 0; k < 3; ++k) part[k][i] = v[k];
+  }
+  Lanes<kWide> dot_at(std::uint32_t i, const Vec<3>& v) const {
+    return Lanes<kWide>::load(&part[0][i]) * v[0] + Lanes<kWide>::load(&part[1][i]) * v[1] +
+           Lanes<kWide>::load(&part[2][i]) * v[2];
+  }
+};
+struct Arcs {
+  WideVectors from;
+  WideVectors to;
+  WideVectors along;
+};
+static void set_arcs(const Solid& solid, const Edges& edges, Arcs& arcs) {
+  for (std::uint32_t i = 0; i < edges.count + kWide; ++i) {
+    const Vec<3> none = Vec<3>::zero();
+    const Arc arc = i < edges.count ? arc_of(solid, edges.index[i]) : Arc{none, none, none, none};
+    arcs.from.set(i, arc.from);
+    arcs.to.set(i, arc.to);
+    arcs.along.set(i, arc.along);
+  }
 }
 
-struct EdgeAxis {
-  std::uint32_t edge_a = 0;
-  std::uint32_t edge_b = 0;
-  float separation = kNoSeparation;
-  Vec<3> normal;
-};
+/// Below zero for each arc that, turned round, crosses that of a: whose edge makes a face of the
+/// Minkowski difference with the edge of a.
+static void try_arcs(const Arc& a, const Arcs& arcs, std::uint32_t count, float* crossing) {
+  for (std::uint32_t i = 0; i < count; i += kWide) {
+    const Lanes<kWide> from_b = arcs.from.dot_at(i, a.along);
+    const Lanes<kWide> to_b = arcs.to.dot_at(i, a.along);
+    const Lanes<kWide> from_a = arcs.along.dot_at(i, a.from);
+    const Lanes<kWide> to_a = arcs.along.dot_at(i, a.to);
+    max(max(from_b * to_b, from_a * to_a), from_b * to_a).store(crossing + i);
+  }
+}
 
 /// Edges that are parallel within 1e-3 rad have no axis.
 static constexpr float kParallelSquared = 1.0e-6f;
@@ -96,12 +113,17 @@ static constexpr float kParallelSquared = 1.0e-6f;
 static EdgeAxis best_edges(const Solid& a, const Edges& edges_a, const Solid& b,
                            const Edges& edges_b, const AxisTolerance& tolerance, float threshold) {
   EdgeAxis best;
+  if (edges_a.count == 0 || edges_b.count == 0) return best;
+  Arcs arcs;
+  float crossing[kHullEdgesMax / 2 + kWide];
+  set_arcs(b, edges_b, arcs);
   for (std::uint32_t i = 0; i < edges_a.count; ++i) {
     const Arc arc_a = arc_of(a, edges_a.index[i]);
     const Vec<3> middle = arc_a.from + arc_a.to;
+    try_arcs(arc_a, arcs, edges_b.count, crossing);
     for (std::uint32_t j = 0; j < edges_b.count; ++j) {
+      if (!(crossing[j] < 0.0f)) continue;
       const Arc arc_b = arc_of(b, edges_b.index[j]);
-      if (!arcs_cross(arc_a, arc_b)) continue;
       Vec<3> across = cross(arc_a.along, arc_b.along);
       const float squared = dot(across, across);
       const float parallel =
@@ -124,28 +146,34 @@ static float size_of(const Solid& solid) {
   return length(solid.vertices[0] - solid.centre);
 }
 
-/// Axes in the order: faces of a, faces of b, edges of a across edges of b, a's first; a later one
-/// has to be better by AxisTolerance. Source: Gregorius, "The Separating Axis Test between Convex
-/// Polyhedra" (GDC 2013).
-Manifold<3> solid_against_solid(const Solid& a, const Solid& b, const Vec<3>& a_to_b,
-                                float margin) {
-  const AxisTolerance tolerance(min(size_of(a), size_of(b)));
-  const FaceAxis face_a = best_face(a, b, tolerance, margin);
-  if (face_a.separation > margin) return {};
-  const FaceAxis face_b = best_face(b, a, tolerance, margin);
-  if (face_b.separation > margin) return {};
-  const bool on_b = face_b.separation > tolerance.beyond(face_a.separation);
-  const FaceAxis& face = on_b ? face_b : face_a;
+bool find_axes(const Solid& a, const Solid& b, const AxisTolerance& tolerance, float margin,
+               Axes& axes) {
+  axes.faces[0] = best_face(a, b, tolerance, margin);
+  if (axes.faces[0].separation > margin) return false;
+  axes.faces[1] = best_face(b, a, tolerance, margin);
+  if (axes.faces[1].separation > margin) return false;
+  const FaceAxis& face = axes.faces[axes.on_b(tolerance) ? 1 : 0];
   const float threshold = tolerance.beyond_faces(face.separation);
   Edges edges_a;
   Edges edges_b;
-  promising_edges(a, b, face_a.support, threshold, edges_a);
-  if (edges_a.count > 0) promising_edges(b, a, face_b.support, threshold, edges_b);
-  const EdgeAxis edges = best_edges(a, edges_a, b, edges_b, tolerance, threshold);
-  if (edges.separation > margin) return {};
+  promising_edges(a, b, axes.faces[0].support, threshold, edges_a);
+  if (edges_a.count > 0) promising_edges(b, a, axes.faces[1].support, threshold, edges_b);
+  axes.edges = best_edges(a, edges_a, b, edges_b, tolerance, threshold);
+  return axes.edges.separation <= margin;
+}
+
+/// Source: Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013).
+Manifold<3> solid_against_solid(const Solid& a, const Solid& b, const Vec<3>& a_to_b,
+                                float margin) {
+  const AxisTolerance tolerance(min(size_of(a), size_of(b)));
+  Axes axes;
+  if (!find_axes(a, b, tolerance, margin, axes)) return {};
+  const EdgeAxis& edges = axes.edges;
   if (edges.separation > kNoSeparation)
-    return touch_edges({a, b, edges.edge_a, edges.edge_b, edges.normal, edges.separation}, a_to_b,
-                       margin);
+    return touch_edges({a, b, edges.edge_a, edges.edge_b, edges.normal, edges.separation},
+                       tolerance, a_to_b, margin);
+  const bool on_b = axes.on_b(tolerance);
+  const FaceAxis& face = axes.faces[on_b ? 1 : 0];
   return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, a_to_b, margin);
 }
 

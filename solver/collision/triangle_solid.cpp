@@ -1,26 +1,25 @@
 #include "solver/collision/rod.hpp"
 #include "solver/collision/triangle.hpp"
-#include "solver/collision/triangle_clip.hpp"
+#include "solver/collision/triangle_contact.hpp"
 
 namespace cycloid::solver {
-
-/// Which features meet: the triangle's face, a face of the solid, or an edge of each.
-struct Contacting {
-  enum Kind { kOwnFace, kSolidFace, kEdges } kind = kOwnFace;
-  Vec<3> normal;  ///< From the triangle to the solid.
-  float separation = 0.0f;
-  std::uint32_t face = 0;
-  std::uint32_t triangle_edge = 0;
-  std::uint32_t solid_edge = 0;
-  float own_separation = 0.0f;  ///< Along the triangle's normal, m.
-  float refused = -3.0e38f;     ///< Along the best axis that is a neighbour's, m.
-  float flat = -3.0e38f;        ///< Along the best axis over an edge that is not convex, m.
-};
 
 /// How much farther apart than the best so far an axis has to be to take its place, m, so that
 /// what rests does not change its axis from tick to tick.
 static float preference(const Solid& solid) {
   return 1.0e-4f * length(solid.vertices[0] - solid.centre);
+}
+
+static std::uint32_t lowest_corner(const Solid& solid, const Vec<3>& normal) {
+  std::uint32_t lowest = 0;
+  float least = dot(normal, solid.vertices[0]);
+  for (std::uint32_t i = 1; i < solid.vertex_count; ++i) {
+    const float height = dot(normal, solid.vertices[i]);
+    if (height >= least) continue;
+    least = height;
+    lowest = i;
+  }
+  return lowest;
 }
 
 static std::uint32_t farthest_corner(const Solid& triangle, const Vec<3>& direction) {
@@ -33,9 +32,12 @@ static std::uint32_t farthest_corner(const Solid& triangle, const Vec<3>& direct
 /// Whether an axis may take the place of the best one. Where it is better, but beyond a convex
 /// neighbour's normal or behind the triangle, notes that: others have to make the contact.
 static bool takes_over(const Solid& triangle, std::uint32_t edges, const Vec<3>& normal,
-                       float separation, Contacting& best) {
+                       float separation, bool strict, Contacting& best) {
   const float along = dot(normal, triangle.normals[0]);
-  if (along > kLiesFlat) return false;
+  if (along > kLiesFlat && !strict) {
+    best.upright = max(best.upright, separation);
+    return false;
+  }
   const Leaning leaning = leaning_of(triangle, edges, normal);
   if (leaning == Leaning::kOwnOnly) {
     best.flat = max(best.flat, separation);
@@ -47,9 +49,9 @@ static bool takes_over(const Solid& triangle, std::uint32_t edges, const Vec<3>&
 }
 
 /// False where a face of the solid separates by more than the margin.
-static bool survey_faces(const Solid& triangle, const Solid& solid, float margin,
-                         Contacting& best) {
-  const float preferred = preference(solid);
+static bool survey_faces(const Solid& triangle, const Solid& solid, const Judgement& judgement,
+                         float margin, Contacting& best) {
+  const float preferred = judgement.strict ? 0.0f : judgement.preferred;
   for (std::uint32_t f = 0; f < solid.face_count; ++f) {
     const Vec<3> on_face = solid.vertices[solid.edges[solid.faces[f].edge].origin];
     const Vec<3> normal = -solid.normals[f];
@@ -57,11 +59,13 @@ static bool survey_faces(const Solid& triangle, const Solid& solid, float margin
     const float separation = dot(normal, on_face - triangle.vertices[corner]);
     if (separation > margin) return false;
     if (separation <= best.separation + preferred) continue;
-    if (!takes_over(triangle, edges_at(corner), normal, separation, best)) continue;
+    if (!takes_over(triangle, edges_at(corner), normal, separation, judgement.strict, best))
+      continue;
     best.kind = Contacting::kSolidFace;
     best.normal = normal;
     best.separation = separation;
     best.face = f;
+    best.lowest = corner;
   }
   return true;
 }
@@ -70,10 +74,10 @@ static bool survey_faces(const Solid& triangle, const Solid& solid, float margin
 /// behind the axis, and so does the triangle. False where a pair separates by more than the margin.
 /// Source: Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013); of a triangle
 /// the arc of an edge's normals is half a circle.
-static bool survey_edges(const Solid& triangle, const Solid& solid, float margin,
-                         Contacting& best) {
+static bool survey_edges(const Solid& triangle, const Solid& solid, const Judgement& judgement,
+                         float margin, Contacting& best) {
   const Vec<3> own = triangle.normals[0];
-  const float preferred = preference(solid);
+  const float preferred = judgement.strict ? 0.0f : judgement.preferred;
   Vec<3> sides[3];
   std::array<float, kHullFacesMax> turns[3];
   for (std::uint32_t i = 0; i < 3; ++i) {
@@ -99,7 +103,7 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
       if (separation > margin) return false;
       if (separation <= best.separation + preferred) continue;
       const Vec<3> normal = scale * axis;
-      if (!takes_over(triangle, 1u << i, normal, separation, best)) continue;
+      if (!takes_over(triangle, 1u << i, normal, separation, judgement.strict, best)) continue;
       best.kind = Contacting::kEdges;
       best.normal = normal;
       best.separation = separation;
@@ -110,99 +114,56 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, float margin
   return true;
 }
 
-/// The corners of a clipped polygon as points against a face that looks along `normal`. The
-/// polygon is of the other shape.
-static void add_polygon(const Polygon& polygon, const Vec<3>& normal, const Vec<3>& on_face,
-                        std::uint32_t face, bool on_b, const Vec<3>& a_to_b, float margin,
-                        Manifold<3>& manifold) {
-  std::array<Candidate, Polygon::kCornersMax> found;
-  std::size_t count = 0;
-  for (std::uint32_t i = 0; i < polygon.count; ++i) {
-    const float height = dot(normal, polygon.corners[i] - on_face);
-    if (height > margin) continue;
-    const std::uint32_t before = polygon.labels[i == 0 ? polygon.count - 1 : i - 1];
-    found[count++] = {polygon.corners[i] - (0.5f * height) * normal, height,
-                      clip_feature(on_b, face, before, polygon.labels[i])};
-  }
-  reduce(std::span<const Candidate>(found).first(count), a_to_b, manifold);
-}
-
-/// The face that looks most against `normal`; of equal ones the first.
-static std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal) {
-  std::uint32_t best = 0;
-  float least = dot(solid.normals[0], normal);
-  for (std::uint32_t f = 1; f < solid.face_count; ++f) {
-    const float along = dot(solid.normals[f], normal);
-    if (along < least) {
-      least = along;
-      best = f;
-    }
-  }
-  return best;
-}
-
-static void add_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
-                        const Vec<3>& a_to_b, float margin, Manifold<3>& manifold) {
-  manifold.normal = best.normal;
-  const float slack = 1.0e-5f * length(solid.vertices[0] - solid.centre);
-  Polygon polygon;
-  if (best.kind == Contacting::kOwnFace) {
-    const std::uint32_t face = opposed_face(solid, best.normal);
-    face_polygon(solid, face, polygon);
-    clip_polygon(triangle, 0, slack, polygon);
-    add_polygon(polygon, best.normal, triangle.vertices[0], face, false, a_to_b, margin, manifold);
-  } else if (best.kind == Contacting::kSolidFace) {
-    face_polygon(triangle, 0, polygon);
-    clip_polygon(solid, best.face, slack, polygon);
-    const Vec<3> on_face = solid.vertices[solid.edges[solid.faces[best.face].edge].origin];
-    add_polygon(polygon, solid.normals[best.face], on_face, best.face, true, a_to_b, margin,
-                manifold);
-  } else {
-    const PolyhedronEdge& half = solid.edges[best.solid_edge];
-    const std::uint32_t next = best.triangle_edge == 2 ? 0 : best.triangle_edge + 1;
-    const Vec<3> from = solid.vertices[half.origin];
-    const Vec<3> to = solid.vertices[solid.edges[half.twin].origin];
-    const SegmentPair pair =
-        nearest_points(triangle.vertices[best.triangle_edge], triangle.vertices[next], from, to);
-    add_point(0.5f * (pair.on_a + pair.on_b), best.separation,
-              edge_feature(best.solid_edge) | (best.triangle_edge << 20), a_to_b, manifold);
-  }
-}
-
 /// Whether the triangle's own normal would push a solid far out over an edge that it only grazes
 /// from beside: a box against a step does not jump onto it. Where the surface is fine and round,
 /// both ways are about as long, and the own normal is right.
 static bool is_another_s(const Contacting& best, float preferred) {
   if (best.kind != Contacting::kOwnFace || best.refused <= best.separation + preferred)
     return false;
-  return -best.separation > 4.0f * max(-best.refused, 0.0f) + preferred;
+  return best.refused <= 0.0f && -best.separation > -4.0f * best.refused + preferred;
+}
+
+/// The best axis from a start at the triangle's own normal. False: apart by more than the margin.
+static bool survey(const Solid& triangle, const Solid& solid, const Judgement& judgement,
+                   float margin, Contacting& best) {
+  const Contacting own = best;
+  if (!survey_faces(triangle, solid, judgement, margin, best)) return false;
+  if (!survey_edges(triangle, solid, judgement, margin, best)) return false;
+  // A pair of edges that is not the best of all axes need not meet at all.
+  const float better = max(best.elsewhere(), best.upright);
+  if (best.kind != Contacting::kEdges || better <= best.separation) return true;
+  best.kind = own.kind;
+  best.normal = own.normal;
+  best.separation = own.separation;
+  best.lowest = own.lowest;
+  return true;
 }
 
 /// A solid is met from the free side, by a rule without memory: its centre must not lie behind the
 /// triangle's plane, so what is pushed out is sunk by less than half of its extent.
 Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, const Vec<3>& a_to_b,
                                    float margin) {
-  Contacting best;
-  best.normal = triangle.normals[0];
-  if (dot(best.normal, solid.centre - triangle.vertices[0]) < 0.0f) return {};
-  best.separation = 3.0e38f;
-  for (std::uint32_t i = 0; i < solid.vertex_count; ++i)
-    best.separation =
-        min(best.separation, dot(best.normal, solid.vertices[i] - triangle.vertices[0]));
-  if (best.separation > margin) return {};
-  best.own_separation = best.separation;
-  if (!survey_faces(triangle, solid, margin, best)) return {};
-  if (!survey_edges(triangle, solid, margin, best)) return {};
-  // A pair of edges that is not the best of all axes need not meet at all.
-  if (best.kind == Contacting::kEdges && max(best.refused, best.flat) > best.separation) {
-    best.kind = Contacting::kOwnFace;
-    best.normal = triangle.normals[0];
-    best.separation = best.own_separation;
-  }
-  if (is_another_s(best, preference(solid))) return {};
-  Manifold<3> manifold;
-  add_contact(triangle, solid, best, a_to_b, margin, manifold);
-  return manifold;
+  Contacting own;
+  own.normal = triangle.normals[0];
+  if (dot(own.normal, solid.centre - triangle.vertices[0]) < 0.0f) return {};
+  own.lowest = lowest_corner(solid, own.normal);
+  own.separation = dot(own.normal, solid.vertices[own.lowest] - triangle.vertices[0]);
+  if (own.separation > margin) return {};
+
+  Judgement judgement = {false, preference(solid)};
+  Contacting best = own;
+  if (!survey(triangle, solid, judgement, margin, best)) return {};
+  if (is_another_s(best, judgement.preferred)) return {};
+  const TriangleContact first = triangle_contact(triangle, solid, best, judgement, a_to_b, margin);
+  if (first.complete) return first.manifold;
+
+  // An axis that is almost the best, and was taken since it changes less from tick to tick, need
+  // not be one along which anything meets.
+  judgement.strict = true;
+  best = own;
+  if (!survey(triangle, solid, judgement, margin, best)) return {};
+  const TriangleContact again = triangle_contact(triangle, solid, best, judgement, a_to_b, margin);
+  return again.manifold.point_count > 0 ? again.manifold : first.manifold;
 }
 
 }  // namespace cycloid::solver

@@ -1,6 +1,9 @@
 #pragma once
 
+#include <memory>
+
 #include "solver/queries/query.hpp"
+#include "solver/solids/hull_builder.hpp"
 #include "solver/state.hpp"
 
 namespace cycloid::solver {
@@ -43,6 +46,7 @@ struct Core<3> {
   std::uint32_t edge_count = 0;  ///< Half-edges.
   const PolyhedronFace* faces = nullptr;
   const PolyhedronEdge* edges = nullptr;
+  std::shared_ptr<const PolyhedronData> own;      ///< Probe: the hull that these are of.
   Vec<3> centre;                                  ///< Hull: the origin of its own frame.
   Rotation<3> rotation;                           ///< Hull: of its faces.
   std::array<Vec<3>, 6> normals;                  ///< Box and triangle: of the faces; [0] is free.
@@ -64,9 +68,10 @@ Core<D> core_of(const Shape<D>& shape, const Rotation<D>& rotation, const Vec<D>
                 const Polyhedra& polyhedra);
 
 /// The core of a probe whose pose has its position at the origin. In space a box may list its
-/// corners in any order. Other hulls of four or more points have no faces: casts, distances and
-/// what overlaps are as exact as for boxes; how deep such a core crosses another is the depth along
-/// the best face normal of the other one, or along axis 1 where that has none either.
+/// corners in any order. The faces of other hulls are made by `build_polyhedron`; where that
+/// refuses, as for points of one plane, the core has none: casts, distances and what overlaps are
+/// as exact as for others, but how deep it crosses another core is the depth along the best face
+/// normal of that one, or along axis 1 where that has none either.
 Core<2> core_of(const Probe<2>& probe, const Rotation<2>& rotation);
 Core<3> core_of(const Probe<3>& probe, const Rotation<3>& rotation);
 

@@ -1,3 +1,5 @@
+#include <utility>
+
 #include "solver/collision/solid.hpp"
 #include "solver/queries/solid_queries.hpp"
 
@@ -96,6 +98,20 @@ static void find_box(Core<3>& core) {
   }
 }
 
+/// Faces for the points of a probe, if there is a hull of them.
+static void find_hull(const Probe<3>& probe, const Rotation<3>& rotation, Core<3>& core) {
+  auto hull = std::make_shared<PolyhedronData>();
+  if (!build_polyhedron(std::span(probe.points).first(probe.count), *hull).ok()) return;
+  core.kind = ShapeKind::kHull;
+  set_topology(hull->view(), core);
+  core.count = static_cast<std::uint32_t>(hull->vertices.size());
+  core.rotation = rotation;
+  core.centre = rotate(rotation, hull->middle);
+  for (std::size_t i = 0; i < core.count; ++i)
+    core.vertices[i] = core.centre + rotate(rotation, hull->vertices[i].position);
+  core.own = std::move(hull);
+}
+
 Core<3> core_of(const Probe<3>& probe, const Rotation<3>& rotation) {
   Core<3> core{};
   core.kind = ShapeKind::kBall;
@@ -104,6 +120,7 @@ Core<3> core_of(const Probe<3>& probe, const Rotation<3>& rotation) {
   core.radius = probe.radius;
   for (std::size_t i = 0; i < core.count; ++i) core.vertices[i] = rotate(rotation, probe.points[i]);
   if (core.count == 8) find_box(core);
+  if (core.count >= 4 && core.kind != ShapeKind::kBox) find_hull(probe, rotation, core);
   return core;
 }
 

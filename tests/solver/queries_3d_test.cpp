@@ -175,6 +175,20 @@ TEST(SolidQueries, OverlapAndClosestPointTellDepthAndSide) {
   EXPECT_FALSE(closest_point(floor, {{0, -0.4f, 0}}, 1.0f, {}));
 }
 
+TEST(SolidQueries, OverlapOfAHullProbeIsAsDeepAsItsFacesTell) {
+  Probe<3> probe;  // A corner cut from a cube: the slanted face is 1 / sqrt(3) from the origin.
+  probe.count = 4;
+  probe.points[1] = {{1, 0, 0}};
+  probe.points[2] = {{0, 1, 0}};
+  probe.points[3] = {{0, 0, 1}};
+  const float slant = 1.0f / std::sqrt(3.0f);
+  const auto hits =
+      overlap(state_of(solid_ball(0.1f)), probe, pose_of<3>({{-0.3f, -0.3f, -0.3f}}), 0.0f, {});
+  ASSERT_EQ(hits.size(), 1u);
+  EXPECT_NEAR(hits[0].separation, -(slant - 0.9f * slant + 0.1f), kRound);
+  expect_near(hits[0].normal, {{-slant, -slant, -slant}});
+}
+
 static Shape<3> random_shape(std::mt19937& random, Polyhedra& pools) {
   const Vec<3> half = {
       {uniform(random, 0.05f, 1), uniform(random, 0.05f, 1), uniform(random, 0.05f, 1)}};

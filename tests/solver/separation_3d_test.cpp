@@ -234,7 +234,7 @@ TEST(SolidSeparation, FindsABoxAmongTheCornersOfAProbe) {
   }
 }
 
-TEST(SolidSeparation, OfProbesWithoutFacesIsExactApartAndFiniteInside) {
+TEST(SolidSeparation, OfHullProbesIsThatOfHulls) {
   std::mt19937 random(9);
   for (int i = 0; i < 2000; ++i) {
     Polyhedra pools;
@@ -243,21 +243,35 @@ TEST(SolidSeparation, OfProbesWithoutFacesIsExactApartAndFiniteInside) {
     probe.count = 12;
     for (std::size_t k = 0; k < 12; ++k) probe.points[k] = corners[k];
     const Rotation<3> turn = random_rotation(random);
-    const Core<3> bare = core_of(probe, turn);
+    const Core<3> own = core_of(probe, turn);
+    ASSERT_EQ(own.kind, ShapeKind::kHull);
+    const Core<3> copy = own;  // Shares the faces.
     const Core<3> hull = core_at(solid_hull(corners, pools), {{0, 0, 0}}, turn, pools);
     const Vec<3> at = random_vector(random, 1.2f);
     for (const Shape<3>& shape : {solid_box({{0.4f, 0.6f, 0.5f}}), solid_ball(0.1f)}) {
-      const Separation<3> found = separation_of(bare, core_at(shape, at));
+      const Separation<3> found = separation_of(copy, core_at(shape, at));
       const Separation<3> wanted = separation_of(hull, core_at(shape, at));
       EXPECT_EQ(found.crossing, wanted.crossing);
       ASSERT_NEAR(length(found.normal), 1, 1e-5f);
-      if (wanted.crossing) {
-        EXPECT_LE(found.distance, wanted.distance + 1e-6f);
-      } else {
-        EXPECT_NEAR(found.distance, wanted.distance, 2e-6f);
-      }
+      EXPECT_NEAR(found.distance, wanted.distance, 2e-6f);
     }
   }
+}
+
+TEST(SolidSeparation, OfAFlatProbeIsExactApartAndFiniteInside) {
+  Probe<3> probe;
+  probe.count = 4;
+  for (std::size_t i = 0; i < 4; ++i)
+    probe.points[i] = {{i < 2 ? -0.5f : 0.5f, 0.0f, i % 2 == 0 ? -0.5f : 0.5f}};
+  const Core<3> plate = core_of(probe, identity_rotation<3>());
+  EXPECT_EQ(plate.face_count, 0u);
+  const Separation<3> apart = separation_of(plate, core_at(solid_ball(0.1f), {{0.3f, 0.5f, 0}}));
+  EXPECT_NEAR(apart.distance, 0.4f, 1e-6f);
+  const Separation<3> across =
+      separation_of(plate, core_at(solid_box({{1, 1, 1}}), {{0.1f, 0.2f, 0}}));
+  EXPECT_TRUE(across.crossing);
+  EXPECT_NEAR(across.distance, -0.8f, 1e-6f);
+  EXPECT_NEAR(length(across.normal), 1.0f, 1e-6f);
 }
 
 /// Two triangles that share the edge along z at the origin; the second is turned by `angle`.

@@ -230,7 +230,8 @@ TEST(SolidCollision, RandomHullsAgreeWithEveryAxisTried) {
     expect_finite(manifold);
     const double along = axis_of(manifold.normal).between(a, b);
     EXPECT_GE(along, best + 0.025 * best - 2.6e-3) << i;
-    EXPECT_NEAR(static_cast<double>(deepest(manifold)), along, 2.1e-3) << i;
+    EXPECT_GE(static_cast<double>(deepest(manifold)), along - 1e-4) << i;
+    EXPECT_LE(static_cast<double>(deepest(manifold)), best + 6e-4) << i;
   }
   EXPECT_GT(overlapping, 1500);
 }

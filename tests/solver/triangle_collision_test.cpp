@@ -150,6 +150,45 @@ TEST(TriangleCollision, CapsuleOnARidgeAcrossItLeansOnIt) {
   }
 }
 
+// It leads past a free edge: one end is over the triangle, behind it, and the axis goes through the
+// plane beside it.
+TEST(TriangleCollision, CapsuleThatPassesBesideIsApart) {
+  const auto alone = surface({{{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}}, {{0, 1, 2}});
+  // The line x + y = -0.1 at z = 0.5 is 0.1 / sqrt 2 from the edge x = 0.
+  const Vec<3> from = {{-1.1f, 1.0f, 0.5f}};
+  const Vec<3> to = {{0.3f, -0.4f, 0.5f}};
+  EXPECT_TRUE(meet(alone, Rod{from, to, 0.05f}).empty());
+  const auto near = meet(alone, Rod{from, to, 0.1f});
+  EXPECT_TRUE(near.empty()) << "the edge is on the far side: towards the back";
+}
+
+TEST(TriangleCollision, CapsuleThroughATriangleLeavesItOverTheNearestEdge) {
+  const auto alone = surface({{{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}}, {{0, 1, 2}});
+  // Leans 0.6 : 0.8 and goes through the plane at x = 0.05: 0.04 from the edge x = 0.
+  const Rod rod = {{{0.8f, 1.0f, 0.4f}}, {{-0.4f, -0.6f, 0.4f}}, 0.1f};
+  const auto all = meet(alone, rod);
+  ASSERT_EQ(all.size(), 1u);
+  ASSERT_EQ(all[0].point_count, 1u);
+  expect_normal(all[0], -0.8f, 0.6f, 0.0f, 1e-5f);
+  EXPECT_NEAR(deepest(all), -0.14f, 1e-5f);
+}
+
+// A board that leans over the edge x = 0 from outside: its middle is in front of the triangle and
+// its lower end far behind it, and it is apart along its own face, which looks to the front.
+TEST(TriangleCollision, BoxThatReachesBehindIsApart) {
+  const auto alone = surface({{{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}}, {{0, 1, 2}});
+  const Rotation<3> turn = {{0.0f, 0.0f, std::sqrt(0.2f), std::sqrt(0.8f)}};
+  for (const float gap : {-0.005f, 0.001f, 0.005f}) {
+    const float across = 0.1f + gap;
+    const Vec<3> middle = {{-0.6f * across - 0.8f * 0.3f, -0.8f * across + 0.6f * 0.3f, 0.4f}};
+    const auto all = meet(alone, make_box({{0.1f, 1.0f, 0.3f}}, middle, turn));
+    if (gap > 0.0f)
+      EXPECT_GT(deepest(all), 0.0f) << gap;
+    else
+      EXPECT_TRUE(all.empty()) << "out to the back, which is shorter by far";
+  }
+}
+
 TEST(TriangleCollision, TouchingDegeneratelyIsDefinedAtAllSizes) {
   for (const float size : {1e-3f, 1.0f, 1e3f}) {
     const auto alone = surface({{{0, 0, 0}}, {{0, 0, size}}, {{size, 0, 0}}}, {{0, 1, 2}});
