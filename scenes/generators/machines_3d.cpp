@@ -34,8 +34,8 @@ static SceneBody hills() {
 static SceneBody fence() {
   SceneBody body = frame();
   body.name = "fence";
-  for (const Triple& normal : {Triple{1.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f},
-                               {0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, -1.0f}}) {
+  for (const Triple& normal :
+       {Triple{1.0f, 0.0f, 0.0f}, {-1.0f, 0.0f, 0.0f}, {0.0f, 0.0f, 1.0f}, {0.0f, 0.0f, -1.0f}}) {
     SceneShape& wall = body.shapes.emplace_back();
     wall.kind = solver::ShapeKind::kHalfSpace;
     wall.normal = normal;

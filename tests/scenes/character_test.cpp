@@ -277,23 +277,28 @@ TEST(CharacterCourse, RestoredAtAnyTickItGoesOnAsItDid) {
   EXPECT_EQ(third.digest(), digests[600]);
 }
 
-TEST(CharacterCourse, InSpaceABallWalksBothWaysAndNotUpTheSteepSlope) {
+TEST(CharacterCourse, InSpaceTwoCapsulesClimbPushJumpAndWanderOverHills) {
   const Scene scene = character_course_3d();
   Simulation simulation = started(scene);
-  const std::vector<CharacterPose> poses = run_course(scene, simulation);
-  EXPECT_NEAR(poses[85].position[0], -3.79f, 0.05f);
-  EXPECT_LT(poses[85].position[1], 0.03f);
-  EXPECT_GT(poses[150].position[1], 1.2f);
-  EXPECT_GT(poses[190].position[1], 0.1f);  // On a bump.
-  EXPECT_GT(poses[260].position[2], 3.0f);
-  EXPECT_GT(poses[600].position[1], 7.0f);  // Up the ramp.
-  EXPECT_GT(simulation.poses()[4].position[2], 4.0f);
-  SeatInput diagonal;
-  diagonal.axes = {32767, 32767, 0, 0};
-  Simulation flat = started(scene);
-  for (int tick = 0; tick < 30; ++tick) ASSERT_TRUE(flat.step(std::span(&diagonal, 1)).ok());
-  const CharacterPose pose = flat.characters()[0];
-  EXPECT_NEAR(std::hypot(pose.velocity[0], pose.velocity[2]), 4.0f, 1.0e-3f);
+  std::vector<std::array<float, 3>> climber(601);
+  float lowest_wanderer = 1.0f;
+  for (std::uint64_t tick = 1; tick <= 600; ++tick) {
+    const SeatInput inputs[2] = {scripted_input(scene, 0, tick), scripted_input(scene, 1, tick)};
+    ASSERT_TRUE(simulation.step(inputs).ok());
+    const std::vector<CharacterPose> poses = simulation.characters();
+    climber[tick] = poses[0].position;
+    lowest_wanderer = std::min(lowest_wanderer, poses[1].position[1]);
+  }
+  EXPECT_NEAR(climber[60][0], -1.37f, 0.05f);  // Stopped by 55 degrees,
+  EXPECT_LT(climber[60][1], 0.03f);
+  EXPECT_NEAR(climber[190][1], 1.5f, 0.1f);    // up the ramp,
+  EXPECT_NEAR(climber[250][1], 2.41f, 0.03f);  // and the stairs;
+  EXPECT_GT(climber[600][0], 17.0f);           // over the gap, and stuck in the corner.
+  EXPECT_LT(climber[600][0], 17.5f);
+  EXPECT_GT(climber[600][1], 2.39f);
+  EXPECT_GT(lowest_wanderer, -0.01f);
+  const Simulation& end = simulation;
+  EXPECT_GT(end.poses()[2].position[0], 13.0f);  // The crate went over the edge.
 }
 
 }  // namespace cycloid::scenes
