@@ -39,6 +39,23 @@ struct Separation {
   float separation;
 };
 
+/// Whether two edges are parallel within 0.01 rad and run along each other for a hundredth of the
+/// shorter one.
+static bool parallel(const Solid& a, std::uint32_t edge_a, const Solid& b, std::uint32_t edge_b) {
+  const Vec<3> p = a.vertices[a.edges[edge_a].origin];
+  const Vec<3> q = b.vertices[b.edges[edge_b].origin];
+  const Vec<3> along_a = a.vertices[end_of(a, edge_a)] - p;
+  const Vec<3> along_b = b.vertices[end_of(b, edge_b)] - q;
+  const Vec<3> across = cross(along_a, along_b);
+  const float square_a = dot(along_a, along_a);
+  const float square_b = dot(along_b, along_b);
+  if (dot(across, across) > 1.0e-4f * square_a * square_b) return false;
+  const float inverse = inverse_or_zero(square_a);
+  const float shared =
+      nearest_fraction(p, along_a, inverse, q + along_b) - nearest_fraction(p, along_a, inverse, q);
+  return shared * shared * square_a >= 1.0e-4f * min(square_a, square_b);
+}
+
 /// Two edges and their nearest points.
 struct NearestEdges {
   SegmentPair points;
@@ -59,6 +76,7 @@ static NearestEdges nearest_edges(const Solid& a, const Solid& b, const Separati
   nearest.points.on_a = a.vertices[0];
   nearest.points.on_b = b.vertices[0];
   float least = 1.0e30f;
+  bool is_parallel = false;
   for (std::uint32_t i = 0; i < edges_a.count; ++i) {
     const Vec<3> p0 = a.vertices[a.edges[edges_a.index[i]].origin];
     const Vec<3> p1 = a.vertices[end_of(a, edges_a.index[i])];
@@ -68,12 +86,43 @@ static NearestEdges nearest_edges(const Solid& a, const Solid& b, const Separati
           nearest_points(p0, p1, b.vertices[b.edges[edge].origin], b.vertices[end_of(b, edge)]);
       const Vec<3> between = here.on_b - here.on_a;
       const float squared = dot(between, between);
-      if (squared >= least) continue;
-      least = squared;
+      // Of pairs that share a nearest corner, one that runs along each other tells more.
+      const bool along_each_other =
+          squared < 1.0002f * least && parallel(a, edges_a.index[i], b, edge);
+      if (squared >= least && !(along_each_other && !is_parallel)) continue;
+      if (squared > 0.9998f * least && is_parallel && !along_each_other) continue;
+      is_parallel = along_each_other;
+      least = min(least, squared);
       nearest = {here, edges_a.index[i], edge};
     }
   }
   return nearest;
+}
+
+/// Where two edges that are parallel run along each other, the other end of what
+/// they share is a second point.
+static void add_far_end(const Solid& a, const Solid& b, const NearestEdges& edges,
+                        Nearest& nearest) {
+  constexpr float kAside = 5.0e-4f;  // m, between the points, seen along the normal.
+  const Vec<3> p = a.vertices[a.edges[edges.edge_a].origin];
+  const Vec<3> q = b.vertices[b.edges[edges.edge_b].origin];
+  const Vec<3> along = a.vertices[end_of(a, edges.edge_a)] - p;
+  const Vec<3> along_b = b.vertices[end_of(b, edges.edge_b)] - q;
+  const float square = dot(along, along);
+  const float square_b = dot(along_b, along_b);
+  if (!parallel(a, edges.edge_a, b, edges.edge_b)) return;
+  const float inverse = inverse_or_zero(square);
+  const float from = nearest_fraction(p, along, inverse, q);
+  const float to = nearest_fraction(p, along, inverse, q + along_b);
+  const float here = nearest_fraction(p, along, inverse, nearest.on_a[0]);
+  const float far = abs(from - here) > abs(to - here) ? from : to;
+  nearest.on_a[1] = p + far * along;
+  nearest.on_b[1] =
+      q + nearest_fraction(q, along_b, inverse_or_zero(square_b), nearest.on_a[1]) * along_b;
+  const Vec<3> aside = cross(nearest.normal, nearest.on_b[1] - nearest.on_a[1]);
+  if (length(aside) > kAside) return;
+  nearest.feature[1] = kNearest + 1;
+  nearest.count = 2;
 }
 
 /// Solids apart whose nearest features are no axis' own: those are corners and edges. The axis is
@@ -93,6 +142,7 @@ static bool nearest_apart(const Solid& a, const Solid& b, Separation axis, float
   nearest.on_b[0] = edges.points.on_b;
   nearest.feature[0] = kNearest;
   nearest.of_face = false;
+  add_far_end(a, b, edges, nearest);
   return true;
 }
 
@@ -163,8 +213,11 @@ bool nearest_of(const Solid& a, const Solid& b, float slack, float margin, Neare
                         : first   ? -b.normals[axes.faces[1].face]
                                   : a.normals[axes.faces[0].face];
   if (best > 0.0f) return nearest_apart(a, b, {normal, best}, margin, nearest);
-  __builtin_printf("unverified\n");
-  if (has_edges) points_of_edges(a, b, axes.edges, nearest);
+  // Rounding alone: one point of the best axis, as near as it gets.
+  if (has_edges)
+    points_of_edges(a, b, axes.edges, nearest);
+  else
+    points_of_face(a, b, axes.faces[first ? 1 : 0], first, slack, nearest);
   return true;
 }
 

@@ -54,6 +54,22 @@ TEST(SolidCollision, ParallelEdgesHaveAFiniteContact) {
   EXPECT_NEAR(apart.normal[1], 1.0f, 1e-4f);
 }
 
+TEST(SolidCollision, ParallelEdgesApartMeetInTheEndsOfWhatTheyShare) {
+  // Cubes on one corner line: the gap between the edges along z is 0.01 each way.
+  for (const float shift : {0.0f, 0.4f}) {
+    const Manifold<3> manifold = meet(kCube, at(0, 0, 0), kCube, at(1.01f, 1.01f, shift), 0.02f);
+    ASSERT_EQ(manifold.point_count, 2u);
+    std::vector<float> ends;
+    for (std::uint32_t i = 0; i < 2; ++i) {
+      EXPECT_NEAR(manifold.points[i].separation, 0.01f * std::sqrt(2.0f), 1e-5f);
+      ends.push_back(manifold.points[i].anchor_a[2]);
+    }
+    EXPECT_NEAR(std::min(ends[0], ends[1]), shift - 0.5f, 1e-5f);
+    EXPECT_NEAR(std::max(ends[0], ends[1]), 0.5f, 1e-5f);
+  }
+  EXPECT_EQ(meet(kCube, at(0, 0, 0), kCube, at(1.01f, 1.01f, 1.0f), 0.02f).point_count, 1u);
+}
+
 TEST(SolidCollision, CoplanarFacesTouchWithoutDepth) {
   const Manifold<3> whole = meet(kCube, at(0, 0, 0), kCube, at(1.0f, 0, 0), 0.0f);
   expect_finite(whole);
