@@ -108,7 +108,7 @@ Scene character_course_3d() {
   add_walker(scene, "wanderer", {0.0f, 1.0f, 6.0f});
   scene.seats[0].script = {walk_entry(1, 60, -1.0f, 0), walk_entry(60, 0, 1.0f, 0),
                            walk_both(200, 215, 1.0f, 0.3f), walk_entry(300, 0, 1.0f, 0)};
-  ScriptEntry leap = walk_entry(330, 0, 1.0f, kJumpButton);
+  ScriptEntry leap = walk_entry(298, 0, 1.0f, kJumpButton);
   leap.every = 40;
   leap.hold = 2;
   scene.seats[0].script.push_back(leap);

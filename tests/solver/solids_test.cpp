@@ -191,7 +191,7 @@ TEST(PlaneInSpace, AFallenStackAgreesWithinThreeCentimetres) {
     step(twin.plane, 1);
     step(twin.space, 1);
   }
-  EXPECT_LT(twin.difference(ids), 1e-4f);  // Falling.
+  EXPECT_LT(twin.difference(ids), 1e-3f);  // Falling; the lowest has just met the ground.
   for (int tick = 12; tick < 180; ++tick) {
     step(twin.plane, 1);
     step(twin.space, 1);
