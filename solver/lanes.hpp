@@ -72,6 +72,16 @@ struct Lanes {
   }
 };
 
+/// Whether any lane is above 0: the one question across lanes, and its answer has no order.
+template <int W>
+bool any_above_zero(Lanes<W> a) {
+  float lanes[W];
+  a.store(lanes);
+  bool any = false;
+  for (const float lane : lanes) any = any || lane > 0.0f;
+  return any;
+}
+
 inline float max(float a, float b) {
   return a > b ? a : b;
 }

@@ -60,6 +60,7 @@ struct ContactBlock {
   bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
   bool rolls;                 ///< Some lane resists rolling or twist.
   bool bounces;               ///< Some lane restitutes.
+  bool bounced;               ///< Some did in the last sweep of bounces.
   bool follows;               ///< Some lane is round.
   Point points[Dim<D>::kManifoldPoints];
 };

@@ -53,7 +53,9 @@ void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a,
                  row.centre_offset + (b.delta_position - a.delta_position),
                  compose(a.delta_rotation, body_a.rotation),
                  compose(b.delta_rotation, body_b.rotation), time_s);
-  row.rows = JointRows<D>{};
+  row.rows.clear();
+  // A user's function may count on rows of zeros.
+  if (frame.joint.kind == JointKind::kUser) row.rows.rows.fill(Row<D>{});
   row.rows_function(frame, row.rows);
   factor_block(0, row.rows.split, row, row.blocks[0]);
   factor_block(row.rows.split, row.rows.count, row, row.blocks[1]);

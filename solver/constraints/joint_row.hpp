@@ -70,7 +70,8 @@ struct JointRow : ConeLimit<D> {
 };
 
 template <int D>
-float row_speed(const Row<D>& row, const Motion<D>& a, const Motion<D>& b) {
+[[gnu::always_inline]] inline float row_speed(const Row<D>& row, const Motion<D>& a,
+                                              const Motion<D>& b) {
   return (dot(row.linear_a, a.velocity) + dot(row.angular_a, a.spin)) +
          (dot(row.linear_b, b.velocity) + dot(row.angular_b, b.spin)) + row.rate;
 }
@@ -83,7 +84,7 @@ struct PairImpulse {
   Vec<D> linear_b = Vec<D>::zero();
   Spin<D> angular_b = Spin<D>::zero();
 
-  void add(const Row<D>& row, float impulse) {
+  [[gnu::always_inline]] void add(const Row<D>& row, float impulse) {
     linear_a += impulse * row.linear_a;
     angular_a += impulse * row.angular_a;
     linear_b += impulse * row.linear_b;
@@ -93,7 +94,8 @@ struct PairImpulse {
 
 /// v += M^-1 J^T lambda: the inertia is met once, however many rows push.
 template <int D>
-void apply(const JointRow<D>& joint, const PairImpulse<D>& impulse, Motion<D>& a, Motion<D>& b) {
+[[gnu::always_inline]] inline void apply(const JointRow<D>& joint, const PairImpulse<D>& impulse,
+                                         Motion<D>& a, Motion<D>& b) {
   a.velocity += joint.mass_a.inverse_mass * impulse.linear_a;
   a.spin += joint.mass_a.inverse_inertia * impulse.angular_a;
   b.velocity += joint.mass_b.inverse_mass * impulse.linear_b;
@@ -102,8 +104,8 @@ void apply(const JointRow<D>& joint, const PairImpulse<D>& impulse, Motion<D>& a
 
 /// The same of one row.
 template <int D>
-void apply_row(const JointRow<D>& joint, const Row<D>& row, float impulse, Motion<D>& a,
-               Motion<D>& b) {
+[[gnu::always_inline]] inline void apply_row(const JointRow<D>& joint, const Row<D>& row,
+                                             float impulse, Motion<D>& a, Motion<D>& b) {
   a.velocity += (joint.mass_a.inverse_mass * impulse) * row.linear_a;
   a.spin += joint.mass_a.inverse_inertia * (impulse * row.angular_a);
   b.velocity += (joint.mass_b.inverse_mass * impulse) * row.linear_b;
@@ -134,14 +136,15 @@ struct RowResponse {
 };
 
 template <int D>
-RowResponse<D> response_to(const JointRow<D>& joint, const Row<D>& row) {
+[[gnu::always_inline]] inline RowResponse<D> response_to(const JointRow<D>& joint,
+                                                         const Row<D>& row) {
   return {joint.mass_a.inverse_mass * row.linear_a, joint.mass_a.inverse_inertia * row.angular_a,
           joint.mass_b.inverse_mass * row.linear_b, joint.mass_b.inverse_inertia * row.angular_b};
 }
 
 /// J_i M^-1 J_j^T.
 template <int D>
-float row_coupling(const Row<D>& i, const RowResponse<D>& j) {
+[[gnu::always_inline]] inline float row_coupling(const Row<D>& i, const RowResponse<D>& j) {
   return (dot(i.linear_a, j.linear_a) + dot(i.angular_a, j.angular_a)) +
          (dot(i.linear_b, j.linear_b) + dot(i.angular_b, j.angular_b));
 }

@@ -26,11 +26,13 @@ L rebound_speed(const L& restitution, const L& u, const L& gap, const L& pull, c
 /// row. Deviation from Catto, Solver2D (2024), which restores the approach speed at the end of the
 /// tick: there e = 1 loses the height fallen between and what third bodies did meanwhile, and a gas
 /// of twenty elastic discs loses its energy.
+/// @returns whether any did.
 template <int D, int W>
-void bounce(const StepContext<D>& context, ContactBlock<D, W>& block,
+bool bounce(const StepContext<D>& context, ContactBlock<D, W>& block,
             std::span<Motion<D>> motions) {
   using L = Lanes<W>;
-  if (!block.bounces) return;
+  if (!block.bounces) return false;
+  bool any = false;
   const L zero(0.0f);
   const L h(context.h);
   MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
@@ -45,6 +47,8 @@ void bounce(const StepContext<D>& context, ContactBlock<D, W>& block,
     const L meets = select(gap + h * speed < zero, L(1.0f), zero);
     const L fast = select(approach < L(-context.tuning.restitution_threshold), meets, zero);
     const L bounces = select(block.restitution > zero, fast, zero);
+    if (!any_above_zero(bounces)) continue;
+    any = true;
     // With the arms where they are now: an effective mass of the tick's start would add energy.
     const L k = coupling(block, block.normal, arms, block.normal, arms);
     const L has_mass = select(point.normal_mass > zero, bounces, zero);
@@ -52,8 +56,10 @@ void bounce(const StepContext<D>& context, ContactBlock<D, W>& block,
     point.bounce_impulse += impulse;
     apply_pair(impulse * block.normal, arms, block, a, b);
   }
+  if (!any) return false;
   scatter(a, block.mass_a, block.body_a, motions);
   scatter(b, block.mass_b, block.body_b, motions);
+  return true;
 }
 
 }  // namespace cycloid::solver

@@ -47,6 +47,18 @@ struct JointRows : ConeRow<D> {
   bool has_motor_axis = false;
   Row<D> axis;
   Row<D> motor_axis;
+
+  /// As JointRows{}, but `rows` keeps what nobody reads: whoever appends a row assigns the whole of
+  /// it.
+  void clear() {
+    static_cast<ConeRow<D>&>(*this) = ConeRow<D>{};
+    count = 0;
+    split = 0;
+    has_axis = false;
+    has_motor_axis = false;
+    axis = Row<D>{};
+    motor_axis = Row<D>{};
+  }
 };
 
 /// The two bodies of a joint as its rows see them. World axes; m and rad.
@@ -147,6 +159,7 @@ void append_rotation_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
   const Spin<D> error = rotation_error(frame);
   for (int i = 0; i < Dim<D>::kSpin; ++i) {
     Row<D>& row = rows.rows[static_cast<std::size_t>(rows.count++)];
+    row = Row<D>{};
     row.angular_a[i] = -1.0f;
     row.angular_b[i] = 1.0f;
     row.error = error[i];

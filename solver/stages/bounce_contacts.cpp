@@ -20,10 +20,16 @@ void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratc
   }
   if (!bounces) return;
   const std::span<Motion<D>> motions = scratch.motions;
-  for (int sweep = 0; sweep < kBounceSweeps; ++sweep)
+  for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {
     for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-      bounce(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
+      ContactBlock<D, W>& block = contacts.blocks[static_cast<std::size_t>(i)];
+      block.bounced = bounce(context, block, motions);
     });
+    // Where nothing has bounced, the next sweep would see the same velocities.
+    bool any = false;
+    for (const ContactBlock<D, W>& block : contacts.blocks) any = any || block.bounced;
+    if (!any) return;
+  }
 }
 
 template <int D, int W>

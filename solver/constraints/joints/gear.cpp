@@ -14,6 +14,7 @@ template <>
 void gear_rows(const JointFrame<2>& frame, JointRows<2>& rows) {
   const Joint<2>& joint = frame.joint;
   Row<2>& row = rows.rows[0];
+  row = Row<2>{};
   row.angular_a[0] = 1.0f;
   const float angle_a = unwrapped_angle(frame.rotation_a, joint.unwrapped[0]);
   if (dot(joint.axis, joint.axis) > 0.0f) {
