@@ -94,12 +94,13 @@ Scene vehicle_3d() {
     add_wheel(scene, "rear-" + side, {-1.1f, -0.45f, z}, false);
     add_wheel(scene, "front-" + side, {1.1f, -0.45f, z}, true);
   }
-  for (int i = 0; i < 6; ++i)
-    scene.bodies.push_back(body_at(
-        "", {11.0f, 0.3f + 0.6f * static_cast<float>(i / 2), 0.35f * (i % 2 == 0 ? -1.0f : 1.0f)},
-        solid_box({0.3f, 0.3f, 0.3f})));
-  for (std::size_t i = scene.bodies.size() - 6; i < scene.bodies.size(); ++i)
-    scene.bodies[i].shapes[0].density = 0.2f;
+  for (int i = 0; i < 6; ++i) {
+    SceneBody crate = body_at(
+        "", {11.0f, 0.15f + 0.3f * static_cast<float>(i / 2), 0.2f * (i % 2 == 0 ? -1.0f : 1.0f)},
+        solid_box({0.15f, 0.15f, 0.15f}));
+    crate.shapes[0].density = 0.2f;
+    scene.bodies.push_back(crate);
+  }
   Seat seat;
   seat.name = "driver";
   // A wheel that rolls to positive x turns against the axle.

@@ -121,12 +121,14 @@ Scene cubes(int side) {
   }
   Seat seat;
   seat.name = "player";
-  seat.controls.push_back(force_control(0, "player", {90.0f, 0.0f, 0.0f}));
-  seat.controls.push_back(force_control(1, "player", {0.0f, 0.0f, 90.0f}));
+  seat.controls.push_back(force_control(0, "player", {70.0f, 0.0f, 0.0f}));
+  seat.controls.push_back(force_control(1, "player", {0.0f, 0.0f, 70.0f}));
   seat.controls.push_back(impulse_control(0, "player", {0.0f, 40.0f, 0.0f}));
-  seat.script.push_back({30, 0, 240, 90, {1.0f, 0.3f, 0.0f, 0.0f}, 0});
-  seat.script.push_back({120, 0, 240, 90, {-0.6f, 1.0f, 0.0f, 0.0f}, 0});
-  seat.script.push_back({210, 0, 240, 60, {0.0f, -1.0f, 0.0f, 0.0f}, 1});
+  // Round and round, with a leap.
+  seat.script.push_back({30, 0, 240, 60, {1.0f, 0.2f, 0.0f, 0.0f}, 0});
+  seat.script.push_back({90, 0, 240, 60, {-0.2f, 1.0f, 0.0f, 0.0f}, 0});
+  seat.script.push_back({150, 0, 240, 60, {-1.0f, -0.2f, 0.0f, 0.0f}, 0});
+  seat.script.push_back({210, 0, 240, 60, {0.2f, -1.0f, 0.0f, 0.0f}, 1});
   scene.seats.push_back(seat);
   return scene;
 }
