@@ -3,6 +3,20 @@
 
 namespace cycloid::solver {
 
+/// How far apart two shapes may be that get contact points, m: what they fly towards each other in
+/// a tick. Not farther than the body's own reach, where continuous collision stops what flies
+/// farther: a point between two surfaces that are forty metres apart would have an arm of twenty.
+template <int D>
+static float margin_of(const StepContext<D>& context, const Body<D>& a, const Body<D>& b) {
+  float flight = context.tick_s * length(b.velocity - a.velocity);
+  if (context.tuning.continuous != 0) {
+    const float reach_a = a.kind == BodyKind::kStatic ? 0.0f : a.extent;
+    const float reach_b = b.kind == BodyKind::kStatic ? 0.0f : b.extent;
+    flight = min(flight, max(reach_a, reach_b));
+  }
+  return context.tuning.speculative_distance + flight;
+}
+
 template <int D>
 static Manifold<D> collide_pair(const StepContext<D>& context, const WorldState<D>& state,
                                 const ShapePair& pair) {
@@ -10,10 +24,8 @@ static Manifold<D> collide_pair(const StepContext<D>& context, const WorldState<
   const Shape<D>& shape_b = state.shapes[pair.shape_b];
   const Body<D>& a = state.bodies[shape_a.body];
   const Body<D>& b = state.bodies[shape_b.body];
-  const float margin =
-      context.tuning.speculative_distance + context.tick_s * length(b.velocity - a.velocity);
   return collide(shape_a, Pose<D>{a.position, a.rotation}, shape_b, Pose<D>{b.position, b.rotation},
-                 margin, state.polyhedra);
+                 margin_of(context, a, b), state.polyhedra);
 }
 
 /// The impulses of the point with the same feature, so that a contact which persists starts from
