@@ -2,6 +2,7 @@
 // for tick in one run, so that both meet the same noise. Prints a table and, with --csv FILE, the
 // same as CSV. Time is the median of the runs' times for the same ticks; overlap and gap are
 // measured with one ruler on the poses of either.
+// --substeps N sets ours, --sleep lets both engines put bodies to sleep, --runs N the repetitions.
 
 #include <malloc.h>
 
@@ -179,6 +180,7 @@ int main(int argc, char** argv) {
   std::FILE* csv = nullptr;
   bool sleep = false;
   int runs = 3;
+  int substeps = 0;  // 0: the scene's.
   std::vector<std::string> names;
   for (int i = 1; i < argc; ++i) {
     const std::string argument = argv[i];
@@ -187,6 +189,8 @@ int main(int argc, char** argv) {
       if (csv == nullptr) return std::perror(argv[i]), 2;
     } else if (argument == "--runs" && i + 1 < argc) {
       runs = std::max(1, std::atoi(argv[++i]));
+    } else if (argument == "--substeps" && i + 1 < argc) {
+      substeps = std::clamp(std::atoi(argv[++i]), 1, 64);
     } else if (argument == "--sleep") {
       sleep = true;
     } else {
@@ -210,6 +214,7 @@ int main(int argc, char** argv) {
       return 2;
     }
     if (!sleep) loaded.scene->tuning.sleep_s = 0.0f;
+    if (substeps > 0) loaded.scene->tuning.substeps = static_cast<std::uint32_t>(substeps);
     const Row row = measure(*loaded.scene, runs, sleep);
     print(stdout,
           "%-14s %6u %9.4f %9.4f %6.2f %9.0f %8.0f %8.0f %8.2f %8.2f %8.2f %8.2f %016" PRIx64 "\n",
