@@ -59,7 +59,9 @@ Scene cloth(int columns) {
 Scene cloth_3d(int columns) {
   Scene scene;
   scene.name = "cloth-3d";
-  scene.summary = "A cloth falls over a ball, another hangs by two corners, and a rope swings";
+  scene.summary =
+      "A cloth falls over a ball, a box and a capsule, another hangs by two corners, and a rope "
+      "swings";
   scene.dimension = 3;
   scene.gravity = {0.0f, -10.0f, 0.0f};
   scene.materials = {{"default", 0.5f, 0.0f, 0.0f}};
@@ -70,6 +72,14 @@ Scene cloth_3d(int columns) {
   half_space.normal = {0.0f, 1.0f, 0.0f};
   floor.shapes = {half_space};
   scene.bodies = {floor, fixed_ball(0.0f, 0.8f, 0.0f, 0.6f)};
+  // The sheet's corners come down on a box and a capsule, the rope swings over the box.
+  SceneBody corner = body_at("", {-0.9f, 0.3f, 0.9f}, solid_box({0.3f, 0.3f, 0.3f}));
+  corner.kind = solver::BodyKind::kStatic;
+  scene.bodies.push_back(corner);
+  SceneBody log = body_at("", {0.9f, 0.3f, -0.9f},
+                          capsule_shape({-0.4f, 0.0f, 0.0f}, {0.4f, 0.2f, 0.0f}, 0.2f));
+  log.kind = solver::BodyKind::kStatic;
+  scene.bodies.push_back(log);
   const float spacing = 2.0f / static_cast<float>(columns - 1);
   Cloth sheet;
   sheet.name = "sheet";
