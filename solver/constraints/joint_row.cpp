@@ -43,6 +43,30 @@ static void hold_cone(JointRow<3>& row) {
   if (has_cone(row)) row.held_cone = hold_block(row, row.rows.cone_axis);
 }
 
+static bool cone_is_near(float, const JointRow<2>&, const Motion<2>&, const Motion<2>&) {
+  return false;
+}
+static bool cone_is_near(float room, const JointRow<3>& row, const Motion<3>& a,
+                         const Motion<3>& b) {
+  if (!has_cone(row)) return false;
+  const float way = row.limit_reach_s * abs(row_speed(row.rows.cone_axis, a, b));
+  return row.cone_impulse > 0.0f || row.cone - row.rows.cone_axis.error < room + way;
+}
+
+/// Whether a limit pushes already or could be reached soon: at the present speed in four substeps,
+/// and a tenth of a metre or radian besides for what the sweeps may do to it. What is farther away
+/// would be solved to an impulse of 0, and its held rows are a good part of a joint's cost.
+template <int D>
+static bool limit_is_near(const JointRow<D>& row, const Motion<D>& a, const Motion<D>& b) {
+  constexpr float kRoom = 0.1f;
+  if (!row.limit_enabled) return false;
+  if (row.lower_impulse > 0.0f || row.upper_impulse > 0.0f) return true;
+  const float coordinate = row.rows.axis.error;
+  const float reach = kRoom + row.limit_reach_s * abs(row_speed(row.rows.axis, a, b));
+  return coordinate - row.lower < reach || row.upper - coordinate < reach ||
+         cone_is_near(kRoom, row, a, b);
+}
+
 template <int D>
 void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a, const Motion<D>& b,
                    JointRow<D>& row) {
@@ -59,11 +83,12 @@ void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a,
   row.rows_function(frame, row.rows);
   factor_block(0, row.rows.split, row, row.blocks[0]);
   factor_block(row.rows.split, row.rows.count, row, row.blocks[1]);
-  const bool acts = row.spring_enabled || row.limit_enabled || row.motor_enabled;
+  row.limit_near = row.rows.has_axis && limit_is_near(row, a, b);
+  const bool acts = row.spring_enabled || row.limit_near || row.motor_enabled;
   if (!row.rows.has_axis || !acts) return;
   row.axis = hold_block(row, row.rows.axis);
   row.motor = row.rows.has_motor_axis ? hold_block(row, row.rows.motor_axis) : row.axis;
-  hold_cone(row);
+  if (row.limit_near) hold_cone(row);
 }
 
 template void evaluate_rows(const WorldState<2>&, float, const Motion<2>&, const Motion<2>&,

@@ -52,11 +52,13 @@ struct JointRow : ConeLimit<D> {
 
   bool spring_enabled;
   bool limit_enabled;
+  bool limit_near;  ///< It pushes, or may within the next substeps: only then it is solved.
   bool motor_enabled;
   Softness spring;  ///< Of the coordinate, or of a position motor.
   float spring_rest;
   float lower;
   float upper;
+  float limit_reach_s;  ///< How far ahead in time a limit is near.
   float motor_speed;
   float motor_impulse_max;
   bool motor_holds_position;

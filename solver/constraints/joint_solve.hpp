@@ -129,14 +129,14 @@ void solve(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, Motion<
   if (rubs_first) solve_block(context, sweep, 1, row, a, b);
   if (row.rows.has_axis) {
     if (sweep != Sweep::kPseudo) solve_drives(row, a, b);
-    if (row.limit_enabled) {
+    if (row.limit_near) {
       const float coordinate = row.rows.axis.error;
       solve_limit(context, sweep, row, row.rows.axis, row.axis, coordinate - row.lower, 1.0f,
                   row.lower_impulse, a, b);
       solve_limit(context, sweep, row, row.rows.axis, row.axis, row.upper - coordinate, -1.0f,
                   row.upper_impulse, a, b);
     }
-    solve_cone(context, sweep, row, a, b);
+    if (row.limit_near) solve_cone(context, sweep, row, a, b);
   }
   if (row.solved_directly) return;
   solve_block(context, sweep, 0, row, a, b);
@@ -176,7 +176,7 @@ inline void correct_cone(float most, JointRow<3>& row, Motion<3>& a, Motion<3>& 
 template <int D>
 void correct_joint(const StepContext<D>& context, JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
   const float most = context.tuning.correction_max;
-  if (row.rows.has_axis && row.limit_enabled) {
+  if (row.rows.has_axis && row.limit_near) {
     const float coordinate = row.rows.axis.error;
     const float beyond = min(coordinate - row.lower, 0.0f) + max(coordinate - row.upper, 0.0f);
     const float lambda = -row.axis.mass * clamp(beyond, -most, most);

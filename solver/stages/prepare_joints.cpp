@@ -45,6 +45,7 @@ static void set_axis(const StepContext<D>& context, const Joint<D>& joint, Joint
   row.target_rate = 0.0f;
   row.lower = joint.lower;
   row.upper = joint.upper;
+  row.limit_reach_s = 4.0f * context.h;
   row.motor_speed = joint.motor_speed;
   row.motor_impulse_max = context.h * joint.motor_max;
 }
