@@ -25,6 +25,17 @@ TEST(Demo, ServerClientsAndReplayAgree) {
   EXPECT_EQ(run_program({"verify", log}).exit, 0);
 }
 
+// Meshes, hulls, joints and characters of space cross the wire and the log like any other state.
+TEST(Demo, OfScenesOfSpaceAgreesToo) {
+  const Folder folder;
+  for (const char* scene : {"vehicle-3d", "character-course-3d"}) {
+    const std::string log = folder.file(std::string(scene) + ".cylog");
+    const Ran ran = run_program({"demo", scene, "--seconds", "1", "--log", log, "--json"});
+    ASSERT_EQ(ran.exit, 0) << scene << ": " << ran.err;
+    EXPECT_EQ(run_program({"verify", log}).exit, 0) << scene;
+  }
+}
+
 TEST(Demo, ReplacesAnOlderLogAndNothingElse) {
   const Folder folder;
   const std::string file = folder.file("demo.cylog");
