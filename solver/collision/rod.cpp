@@ -7,11 +7,13 @@ static Vec<3> without(const Vec<3>& vector, const Vec<3>& direction) {
   return vector - (dot(vector, direction) * inverse_or_zero(square)) * direction;
 }
 
-/// Across `direction`, upwards as far as possible.
+/// Across `direction`, upwards as far as possible; where that is nearly upwards itself, along x.
 static Vec<3> upwards_across(const Vec<3>& direction) {
   const Vec<3> up = {{0.0f, 1.0f, 0.0f}};
   const Vec<3> across = without(up, direction);
-  return dot(across, across) > 0.01f ? normalized_or(across, up) : Vec<3>{{1.0f, 0.0f, 0.0f}};
+  if (dot(across, across) > 0.01f) return normalized_or(across, up);
+  const Vec<3> aside = {{1.0f, 0.0f, 0.0f}};
+  return normalized_or(without(aside, direction), aside);
 }
 
 Vec<3> normal_between(const Rod& a, const Rod& b, const SegmentPair& pair) {

@@ -139,6 +139,19 @@ TEST(RodCollision, TouchingAxesHaveADefinedNormal) {
   expect_normal(ball_in, 0.0f, 1.0f, 0.0f);
 }
 
+// The normal lies across the axis also where the axis all but points upwards.
+TEST(RodCollision, BallInTheMiddleOfASteepCapsuleLeavesAcrossIt) {
+  for (const float lean : {0.0f, 0.02f, 0.05f, 0.2f, 1.0f}) {
+    const Vec<3> half = {{lean, 1.0f, 0.5f * lean}};
+    const Rod capsule{-half, half, 0.3f};
+    const Manifold<3> manifold = rod_against_rod({kZero, kZero, 0.2f}, capsule, kZero, 0.02f);
+    ASSERT_EQ(manifold.point_count, 1u) << lean;
+    EXPECT_NEAR(dot(manifold.normal, half), 0.0f, 1e-5f) << lean;
+    EXPECT_NEAR(length(manifold.normal), 1.0f, 1e-6f) << lean;
+    EXPECT_NEAR(manifold.points[0].separation, -0.5f, 1e-6f) << lean;
+  }
+}
+
 TEST(RodCollision, CapsulePairsMatchTheDistanceInDoublePrecision) {
   Draw draw;
   int met = 0;
