@@ -7,7 +7,7 @@ using solver::JointKind;
 
 /// One capsule of a body that stands upright and looks along x, its left side at negative z. Its
 /// frame lies in the joint to its parent and is not turned.
-struct Part {
+struct SolidPart {
   const char* name;
   int parent;
   Triple joint;  ///< m, from the parent's frame.
@@ -20,7 +20,7 @@ struct Part {
 };
 
 static constexpr int kParts = 11;
-static constexpr Part kPerson[kParts] = {
+static constexpr SolidPart kPerson[kParts] = {
     {"hips", -1, {}, {0.0f, 0.1f, 0.0f}, 0.13f, 0.0f, 0.0f, 0.0f, 0.0f},
     {"torso", 0, {0, 0.14f, 0}, {0.0f, 0.36f, 0.0f}, 0.14f, 0.4f, -0.4f, 0.4f, 4.0f},
     {"head", 1, {0, 0.55f, 0}, {0.0f, 0.14f, 0.0f}, 0.11f, 0.5f, -0.8f, 0.8f, 1.0f},
@@ -34,7 +34,7 @@ static constexpr Part kPerson[kParts] = {
     {"right-lower-leg", 9, {0, -0.42f, 0}, {0, -0.4f, 0}, 0.06f, 0.0f, -2.3f, 0.0f, 2.0f},
 };
 
-struct Person {
+struct SolidPerson {
   std::string prefix;
   Triple hips;
   Triple velocity;
@@ -42,7 +42,7 @@ struct Person {
   std::int32_t group;  ///< Negative: its parts do not collide with each other.
 };
 
-static SceneJoint joint_of(const Person& person, const Part& part) {
+static SceneJoint joint_of(const SolidPerson& person, const SolidPart& part) {
   const bool hinge = part.cone == 0.0f;
   SceneJoint joint = joint_between(hinge ? JointKind::kHinge : JointKind::kConeTwist,
                                    person.prefix + kPerson[part.parent].name, part.joint,
@@ -63,7 +63,7 @@ static SceneJoint joint_of(const Person& person, const Part& part) {
 }
 
 /// Eleven capsules on six cones and four hinges with limits and friction.
-static void add_person(Scene& scene, const Person& person) {
+static void add_person(Scene& scene, const SolidPerson& person) {
   float sine = 0.0f;
   float cosine = 0.0f;
   solver::sin_cos(person.turn, sine, cosine);
@@ -72,7 +72,7 @@ static void add_person(Scene& scene, const Person& person) {
   solver::sin_cos(0.5f * person.turn, half_sine, half_cosine);
   Triple places[kParts];
   for (int i = 0; i < kParts; ++i) {
-    const Part& part = kPerson[i];
+    const SolidPart& part = kPerson[i];
     places[i] = person.hips;
     if (part.parent >= 0) {
       const Triple& from = places[part.parent];

@@ -13,7 +13,7 @@ struct ClipVertex {
   std::uint32_t edge;     ///< To the next vertex: an incident edge, or kCut and a clip edge.
 };
 
-struct Polygon {
+struct ClippedPolygon {
   ClipVertex vertices[kClipMax];
   std::size_t count;
 
@@ -36,7 +36,7 @@ static ClipVertex crossing(const ClipVertex& from, const ClipVertex& to, float f
 }
 
 /// @return whether anything was cut; otherwise `out` is untouched and `in` stands.
-static bool cut(const Polygon& in, const ClipPlane& plane, Polygon& out) {
+static bool cut(const ClippedPolygon& in, const ClipPlane& plane, ClippedPolygon& out) {
   float height[kClipMax];
   bool sticks_out = false;
   for (std::size_t i = 0; i < in.count; ++i) {
@@ -62,7 +62,7 @@ static bool cut(const Polygon& in, const ClipPlane& plane, Polygon& out) {
   return true;
 }
 
-static void start(const Solid& solid, std::uint32_t face, Polygon& polygon) {
+static void start(const Solid& solid, std::uint32_t face, ClippedPolygon& polygon) {
   polygon.count = 0;
   const std::uint32_t first = solid.faces[face].edge;
   std::uint32_t edge = first;
@@ -120,9 +120,9 @@ FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_
 void clip_faces(const FacePair& pair, float margin, Clipped& clipped) {
   const Solid& reference = pair.reference;
   const Vec<3> normal = reference.normals[pair.reference_face];
-  Polygon buffers[2];
-  Polygon* polygon = &buffers[0];
-  Polygon* spare = &buffers[1];
+  ClippedPolygon buffers[2];
+  ClippedPolygon* polygon = &buffers[0];
+  ClippedPolygon* spare = &buffers[1];
   start(pair.incident, pair.incident_face, *polygon);
   const std::uint32_t first = reference.faces[pair.reference_face].edge;
   std::uint32_t edge = first;

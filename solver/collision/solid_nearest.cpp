@@ -21,11 +21,12 @@ static Extent extent_of(const Solid& solid, const Vec<3>& direction) {
 }
 
 /// Even half-edges of which an end reaches `level` along a direction.
-struct Edges {
+struct SolidEdges {
   std::uint32_t index[kHullEdgesMax / 2];
   std::uint32_t count = 0;
 };
-static void edges_above(const Solid& solid, const Vec<3>& direction, float level, Edges& edges) {
+static void edges_above(const Solid& solid, const Vec<3>& direction, float level,
+                        SolidEdges& edges) {
   for (std::uint32_t e = 0; e < solid.edge_count; e += 2) {
     const float from = dot(direction, solid.vertices[solid.edges[e].origin]);
     const float to = dot(direction, solid.vertices[end_of(solid, e)]);
@@ -34,7 +35,7 @@ static void edges_above(const Solid& solid, const Vec<3>& direction, float level
 }
 
 /// An axis from a to b, unit, and how far the solids are apart along it, m.
-struct Separation {
+struct SolidGap {
   Vec<3> normal;
   float separation;
 };
@@ -57,7 +58,7 @@ static bool parallel(const Solid& a, std::uint32_t edge_a, const Solid& b, std::
 }
 
 /// Two edges and their nearest points.
-struct NearestEdges {
+struct NearestSolidEdges {
   SegmentPair points;
   std::uint32_t edge_a;
   std::uint32_t edge_b;
@@ -65,14 +66,14 @@ struct NearestEdges {
 
 /// The nearest points of any two edges, if they are no farther apart than `margin`: these lie
 /// within the margin less the separation of the planes that bound the solids along the axis.
-static NearestEdges nearest_edges(const Solid& a, const Solid& b, const Separation& axis,
-                                  float margin) {
+static NearestSolidEdges nearest_edges(const Solid& a, const Solid& b, const SolidGap& axis,
+                                       float margin) {
   const float depth = margin - axis.separation;
-  Edges edges_a;
-  Edges edges_b;
+  SolidEdges edges_a;
+  SolidEdges edges_b;
   edges_above(a, axis.normal, extent_of(a, axis.normal).high - depth, edges_a);
   edges_above(b, -axis.normal, -extent_of(b, axis.normal).low - depth, edges_b);
-  NearestEdges nearest{};
+  NearestSolidEdges nearest{};
   nearest.points.on_a = a.vertices[0];
   nearest.points.on_b = b.vertices[0];
   float least = 1.0e30f;
@@ -101,7 +102,7 @@ static NearestEdges nearest_edges(const Solid& a, const Solid& b, const Separati
 
 /// Where two edges that are parallel run along each other, the other end of what
 /// they share is a second point.
-static void add_far_end(const Solid& a, const Solid& b, const NearestEdges& edges,
+static void add_far_end(const Solid& a, const Solid& b, const NearestSolidEdges& edges,
                         Nearest& nearest) {
   constexpr float kAside = 5.0e-4f;  // m, between the points, seen along the normal.
   const Vec<3> p = a.vertices[a.edges[edges.edge_a].origin];
@@ -127,9 +128,9 @@ static void add_far_end(const Solid& a, const Solid& b, const NearestEdges& edge
 
 /// Solids apart whose nearest features are no axis' own: those are corners and edges. The axis is
 /// the one along which they are farther apart, of `axis` and the line between the points.
-static bool nearest_apart(const Solid& a, const Solid& b, Separation axis, float margin,
+static bool nearest_apart(const Solid& a, const Solid& b, SolidGap axis, float margin,
                           Nearest& nearest) {
-  const NearestEdges edges = nearest_edges(a, b, axis, margin);
+  const NearestSolidEdges edges = nearest_edges(a, b, axis, margin);
   const Vec<3> between = edges.points.on_b - edges.points.on_a;
   if (length(between) > margin) return false;
   const Vec<3> line = normalized_or(between, axis.normal);

@@ -64,7 +64,7 @@ static bool survey_edges(const Solid& solid, const Rod& rod, float reach, Survey
 }
 
 /// The nearest points of the rod's axis and a solid that it stays outside of.
-struct Nearest {
+struct NearestOnSolid {
   float distance = 3.0e38f;
   std::uint32_t face = kNone;  ///< Over whose inside an end of the rod lies; or else
   std::uint32_t edge = kNone;
@@ -81,8 +81,8 @@ static bool end_over(const Solid& solid, std::uint32_t face, const Rod& rod, con
          (rise <= 0.0f && clip_to_face(solid, face, to, 0.0f).to > 0.0f);
 }
 
-static Nearest nearest_outside(const Solid& solid, const Rod& rod, const Survey& survey) {
-  Nearest nearest;
+static NearestOnSolid nearest_outside(const Solid& solid, const Rod& rod, const Survey& survey) {
+  NearestOnSolid nearest;
   // No two points can be nearer than along a separating axis.
   if (end_over(solid, survey.face, rod, survey)) {
     nearest.distance = survey.face_separation;
@@ -111,7 +111,8 @@ static Nearest nearest_outside(const Solid& solid, const Rod& rod, const Survey&
 }
 
 /// Of the faces that meet at the nearest point the one that looks most along `normal`.
-static std::uint32_t face_along(const Solid& solid, const Nearest& nearest, const Vec<3>& normal) {
+static std::uint32_t face_along(const Solid& solid, const NearestOnSolid& nearest,
+                                const Vec<3>& normal) {
   std::uint32_t best = solid.edges[nearest.edge].face;
   const std::uint32_t right = solid.edges[nearest.edge + 1].face;
   if (dot(solid.normals[right], normal) > dot(solid.normals[best], normal)) best = right;
@@ -129,7 +130,7 @@ static float lowest(const Solid& solid, std::uint32_t face, const Rod& rod, cons
              dot(solid.normals[face], point_on(rod, span.to) - on_face));
 }
 
-static Manifold<3> outside(const Solid& solid, const Rod& rod, const Nearest& nearest,
+static Manifold<3> outside(const Solid& solid, const Rod& rod, const NearestOnSolid& nearest,
                            const Vec<3>& a_to_b, float margin) {
   Manifold<3> manifold;
   const float slack = rounding_of(solid, rod);
@@ -184,7 +185,7 @@ Manifold<3> solid_against_rod(const Solid& solid, const Rod& rod, const Vec<3>& 
   if (!survey_edges(solid, rod, reach, survey)) return {};
   const float slack = rounding_of(solid, rod);
   if (max(survey.face_separation, survey.edge_separation) > slack) {
-    const Nearest nearest = nearest_outside(solid, rod, survey);
+    const NearestOnSolid nearest = nearest_outside(solid, rod, survey);
     if (nearest.distance > reach) return {};
     if (nearest.distance > slack) return outside(solid, rod, nearest, a_to_b, margin);
   }

@@ -15,7 +15,7 @@ static std::uint32_t next_corner(std::uint32_t edge) {
 }
 
 /// Points against a face that looks along `normal`, and the lowest height of any, m.
-struct Heights {
+struct SolidHeights {
   const Vec<3>& normal;
   const Vec<3>& on_face;
   std::uint32_t face;
@@ -160,7 +160,7 @@ static TriangleContact touch_faces(const Solid& triangle, const Solid& solid,
   Polygon polygon;
   face_polygon(other, incident, polygon);
   clip_polygon(reference, face, slack, polygon);
-  Heights heights{reference.normals[face], on_face, own ? incident : face, !own, margin, {}};
+  SolidHeights heights{reference.normals[face], on_face, own ? incident : face, !own, margin, {}};
   heights.add(polygon);
   bool complete = true;
   if (heights.lowest > best.separation + judgement.preferred) {

@@ -3,19 +3,20 @@
 namespace cycloid::solver {
 
 /// A direction along which two cores are this far apart, and the points of them that tell it.
-struct Axis {
+struct DepthAxis {
   bool found = false;
   float separation = -3.0e38f;
   Vec<3> normal = Vec<3>::zero();  ///< Unit, from a to b.
   Vec<3> on_b = Vec<3>::zero();    ///< Lowest point of b's core along it.
 };
 
-static void offer(Axis& best, float separation, const Vec<3>& normal, const Vec<3>& on_b) {
+static void offer(DepthAxis& best, float separation, const Vec<3>& normal, const Vec<3>& on_b) {
   if (separation > best.separation) best = {true, separation, normal, on_b};
 }
 
 /// The faces of `faces` against the corners of `points`. `flipped`: the faces are those of b.
-static void offer_faces(const Core<3>& faces, const Core<3>& points, bool flipped, Axis& best) {
+static void offer_faces(const Core<3>& faces, const Core<3>& points, bool flipped,
+                        DepthAxis& best) {
   const std::uint32_t count = faces.one_sided() ? 1 : faces.face_count;
   for (std::uint32_t f = 0; f < count; ++f) {
     const Vec<3> normal = faces.face_normal(f);
@@ -38,14 +39,14 @@ static void offer_faces(const Core<3>& faces, const Core<3>& points, bool flippe
 }
 
 /// An edge with the normals of the faces to its left and right.
-struct Edge {
+struct DepthEdge {
   Vec<3> from;
   Vec<3> span;
   Vec<3> left;
   Vec<3> right;
 };
 
-static Edge edge_of(const Core<3>& core, std::uint32_t half_edge) {
+static DepthEdge edge_of(const Core<3>& core, std::uint32_t half_edge) {
   const PolyhedronEdge& edge = core.edges[half_edge];
   const PolyhedronEdge& twin = core.edges[edge.twin];
   const Vec<3> from = core.vertices[edge.origin];
@@ -57,7 +58,8 @@ static Edge edge_of(const Core<3>& core, std::uint32_t half_edge) {
 static constexpr float kParallel = 1.0e-3f;
 
 /// Where the lines of two edges are nearest; `normal` is their common perpendicular.
-static void offer_edges(const Edge& a, const Edge& b, const Vec<3>& perpendicular, Axis& best) {
+static void offer_edges(const DepthEdge& a, const DepthEdge& b, const Vec<3>& perpendicular,
+                        DepthAxis& best) {
   const float square = dot(perpendicular, perpendicular);
   if (square <= kParallel * kParallel * dot(a.span, a.span) * dot(b.span, b.span)) return;
   const Vec<3> normal = (1.0f / sqrt(square)) * perpendicular;
@@ -70,7 +72,7 @@ static void offer_edges(const Edge& a, const Edge& b, const Vec<3>& perpendicula
 }
 
 /// Whether the arcs of both edges cross on the Gauss map, b's turned round.
-static bool arcs_cross(const Edge& a, const Edge& b) {
+static bool arcs_cross(const DepthEdge& a, const DepthEdge& b) {
   const float left_b = -dot(b.left, a.span);
   const float right_b = -dot(b.right, a.span);
   if (left_b * right_b >= 0.0f) return false;
@@ -79,12 +81,12 @@ static bool arcs_cross(const Edge& a, const Edge& b) {
   return left_a * right_a < 0.0f && left_b * right_a > 0.0f;
 }
 
-static void offer_edge_pairs(const Core<3>& a, const Core<3>& b, Axis& best) {
-  std::array<Edge, kHullEdgesMax / 2> edges_b;
+static void offer_edge_pairs(const Core<3>& a, const Core<3>& b, DepthAxis& best) {
+  std::array<DepthEdge, kHullEdgesMax / 2> edges_b;
   std::uint32_t count_b = 0;
   for (std::uint32_t e = 0; e < b.edge_count; e += 2) edges_b[count_b++] = edge_of(b, e);
   for (std::uint32_t e = 0; e < a.edge_count; e += 2) {
-    const Edge edge_a = edge_of(a, e);
+    const DepthEdge edge_a = edge_of(a, e);
     for (std::uint32_t i = 0; i < count_b; ++i) {
       if (!arcs_cross(edge_a, edges_b[i])) continue;
       const Vec<3> across = cross(edge_a.span, edges_b[i].span);
@@ -95,11 +97,11 @@ static void offer_edge_pairs(const Core<3>& a, const Core<3>& b, Axis& best) {
 }
 
 /// The edges of a solid against a line. `flipped`: the solid is b.
-static void offer_line(const Core<3>& solid, const Core<3>& line, bool flipped, Axis& best) {
+static void offer_line(const Core<3>& solid, const Core<3>& line, bool flipped, DepthAxis& best) {
   const Vec<3> span = line.vertices[1] - line.vertices[0];
-  const Edge along{line.vertices[0], span, span, span};
+  const DepthEdge along{line.vertices[0], span, span, span};
   for (std::uint32_t e = 0; e < solid.edge_count; e += 2) {
-    const Edge edge = edge_of(solid, e);
+    const DepthEdge edge = edge_of(solid, e);
     if (!(dot(edge.left, span) * dot(edge.right, span) < 0.0f)) continue;
     const Vec<3> across = cross(edge.span, span);
     const bool outwards = dot(across, edge.left + edge.right) > 0.0f;
@@ -130,7 +132,7 @@ static Vec<3> way_apart(const Core<3>& a, const Core<3>& b) {
   return {{1.0f, 0.0f, 0.0f}};
 }
 
-static void offer_way_apart(const Core<3>& a, const Core<3>& b, Axis& best) {
+static void offer_way_apart(const Core<3>& a, const Core<3>& b, DepthAxis& best) {
   const Vec<3> normal = way_apart(a, b);
   float highest = dot(normal, a.vertices[0]);
   for (std::uint32_t i = 1; i < a.count; ++i) highest = max(highest, dot(normal, a.vertices[i]));
@@ -141,7 +143,7 @@ static void offer_way_apart(const Core<3>& a, const Core<3>& b, Axis& best) {
 }
 
 Separation<3> separation_across(const Core<3>& a, const Core<3>& b) {
-  Axis axis;
+  DepthAxis axis;
   const bool surface = a.one_sided() || b.one_sided();
   if (a.one_sided() || !b.one_sided()) offer_faces(a, b, false, axis);
   if (!a.one_sided()) offer_faces(b, a, true, axis);

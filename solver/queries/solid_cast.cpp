@@ -6,14 +6,14 @@ namespace cycloid::solver {
 static constexpr float kTouch = 1.0e-5f;
 
 /// A point that goes straight towards a line, or a point, that `radius` rounds.
-struct Flight {
+struct CastFlight {
   Vec<3> from;       ///< Relative to the start of the line.
   Vec<3> direction;  ///< Unit.
   float way;         ///< m
   float radius;
 };
 
-static void offer(const Flight& flight, float distance, const Vec<3>& normal, Entry<3>& best) {
+static void offer(const CastFlight& flight, float distance, const Vec<3>& normal, Entry<3>& best) {
   if (distance < -kTouch || distance > flight.way) return;
   const float fraction = max(distance, 0.0f) / flight.way;
   if (best.hit && fraction >= best.fraction) return;
@@ -22,7 +22,7 @@ static void offer(const Flight& flight, float distance, const Vec<3>& normal, En
   best.normal = normal;
 }
 
-static void enter_ball(const Flight& flight, const Vec<3>& centre, Entry<3>& best) {
+static void enter_ball(const CastFlight& flight, const Vec<3>& centre, Entry<3>& best) {
   // Split along the way, so that a long way to a small ball keeps its digits.
   const Vec<3> start = flight.from - centre;
   const float along = dot(start, flight.direction);
@@ -34,7 +34,7 @@ static void enter_ball(const Flight& flight, const Vec<3>& centre, Entry<3>& bes
   offer(flight, -along - half, normalized_or(normal, -flight.direction), best);
 }
 
-static void enter_cylinder(const Flight& flight, const Vec<3>& span, Entry<3>& best) {
+static void enter_cylinder(const CastFlight& flight, const Vec<3>& span, Entry<3>& best) {
   const float span_length = length(span);
   const Vec<3> axis = (1.0f / span_length) * span;
   const float advance = dot(flight.direction, axis);
@@ -60,8 +60,8 @@ static void enter_cylinder(const Flight& flight, const Vec<3>& span, Entry<3>& b
 static Entry<3> enter_rod(const Core<3>& core, const Core<3>& probe, const Vec<3>& translation,
                           float way) {
   Entry<3> best{};
-  const Flight flight{probe.vertices[0] - core.vertices[0], (1.0f / way) * translation, way,
-                      core.radius + probe.radius};
+  const CastFlight flight{probe.vertices[0] - core.vertices[0], (1.0f / way) * translation, way,
+                          core.radius + probe.radius};
   if (flight.radius <= 0.0f) return best;
   Vec<3> span = Vec<3>::zero();
   if (core.count > 1) span = core.vertices[1] - core.vertices[0];

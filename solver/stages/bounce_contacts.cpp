@@ -33,16 +33,16 @@ void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratc
 }
 
 template <int D, int W>
-struct Instantiate {
+struct InstantiateBounce {
   static constexpr auto kBounce = &bounce_contacts<D, W>;
 };
-template struct Instantiate<2, 1>;
-template struct Instantiate<2, 4>;
-template struct Instantiate<2, 8>;
-template struct Instantiate<2, 16>;
-template struct Instantiate<3, 1>;
-template struct Instantiate<3, 4>;
-template struct Instantiate<3, 8>;
-template struct Instantiate<3, 16>;
+template struct InstantiateBounce<2, 1>;
+template struct InstantiateBounce<2, 4>;
+template struct InstantiateBounce<2, 8>;
+template struct InstantiateBounce<2, 16>;
+template struct InstantiateBounce<3, 1>;
+template struct InstantiateBounce<3, 4>;
+template struct InstantiateBounce<3, 8>;
+template struct InstantiateBounce<3, 16>;
 
 }  // namespace cycloid::solver

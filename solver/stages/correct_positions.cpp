@@ -27,16 +27,16 @@ void correct_positions(const StepContext<D>& context, const WorldState<D>& state
 }
 
 template <int D, int W>
-struct Instantiate {
+struct InstantiateCorrect {
   static constexpr auto kCorrect = &correct_positions<D, W>;
 };
-template struct Instantiate<2, 1>;
-template struct Instantiate<2, 4>;
-template struct Instantiate<2, 8>;
-template struct Instantiate<2, 16>;
-template struct Instantiate<3, 1>;
-template struct Instantiate<3, 4>;
-template struct Instantiate<3, 8>;
-template struct Instantiate<3, 16>;
+template struct InstantiateCorrect<2, 1>;
+template struct InstantiateCorrect<2, 4>;
+template struct InstantiateCorrect<2, 8>;
+template struct InstantiateCorrect<2, 16>;
+template struct InstantiateCorrect<3, 1>;
+template struct InstantiateCorrect<3, 4>;
+template struct InstantiateCorrect<3, 8>;
+template struct InstantiateCorrect<3, 16>;
 
 }  // namespace cycloid::solver

@@ -40,16 +40,16 @@ void evaluate_contacts(Workers& workers, StepScratch<D>& scratch) {
 }
 
 template <int D, int W>
-struct Instantiate {
+struct InstantiateEvaluate {
   static constexpr auto kEvaluate = &evaluate_contacts<D, W>;
 };
-template struct Instantiate<2, 1>;
-template struct Instantiate<2, 4>;
-template struct Instantiate<2, 8>;
-template struct Instantiate<2, 16>;
-template struct Instantiate<3, 1>;
-template struct Instantiate<3, 4>;
-template struct Instantiate<3, 8>;
-template struct Instantiate<3, 16>;
+template struct InstantiateEvaluate<2, 1>;
+template struct InstantiateEvaluate<2, 4>;
+template struct InstantiateEvaluate<2, 8>;
+template struct InstantiateEvaluate<2, 16>;
+template struct InstantiateEvaluate<3, 1>;
+template struct InstantiateEvaluate<3, 4>;
+template struct InstantiateEvaluate<3, 8>;
+template struct InstantiateEvaluate<3, 16>;
 
 }  // namespace cycloid::solver

@@ -75,16 +75,16 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
 }
 
 template <int D, int W>
-struct Instantiate {
+struct InstantiateProject {
   static constexpr auto kProject = &project_positions<D, W>;
 };
-template struct Instantiate<2, 1>;
-template struct Instantiate<2, 4>;
-template struct Instantiate<2, 8>;
-template struct Instantiate<2, 16>;
-template struct Instantiate<3, 1>;
-template struct Instantiate<3, 4>;
-template struct Instantiate<3, 8>;
-template struct Instantiate<3, 16>;
+template struct InstantiateProject<2, 1>;
+template struct InstantiateProject<2, 4>;
+template struct InstantiateProject<2, 8>;
+template struct InstantiateProject<2, 16>;
+template struct InstantiateProject<3, 1>;
+template struct InstantiateProject<3, 4>;
+template struct InstantiateProject<3, 8>;
+template struct InstantiateProject<3, 16>;
 
 }  // namespace cycloid::solver

@@ -53,16 +53,16 @@ void solve_pseudo_velocities(const StepContext<D>& context, Workers& workers,
 }
 
 template <int D, int W>
-struct Instantiate {
+struct InstantiatePseudo {
   static constexpr auto kSolve = &solve_pseudo_velocities<D, W>;
 };
-template struct Instantiate<2, 1>;
-template struct Instantiate<2, 4>;
-template struct Instantiate<2, 8>;
-template struct Instantiate<2, 16>;
-template struct Instantiate<3, 1>;
-template struct Instantiate<3, 4>;
-template struct Instantiate<3, 8>;
-template struct Instantiate<3, 16>;
+template struct InstantiatePseudo<2, 1>;
+template struct InstantiatePseudo<2, 4>;
+template struct InstantiatePseudo<2, 8>;
+template struct InstantiatePseudo<2, 16>;
+template struct InstantiatePseudo<3, 1>;
+template struct InstantiatePseudo<3, 4>;
+template struct InstantiatePseudo<3, 8>;
+template struct InstantiatePseudo<3, 16>;
 
 }  // namespace cycloid::solver

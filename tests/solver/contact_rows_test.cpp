@@ -4,24 +4,24 @@ namespace cycloid::solver {
 
 /// Rows that cannot act are not built, and rolling resistance.
 
-struct Setting {
+struct RowSetting {
   const char* name;
   Tuning tuning;
 };
 
-static std::vector<Setting> settings() {
-  std::vector<Setting> all = {{"soft_step", Tuning::soft_step()},
-                              {"pgs", Tuning::pgs()},
-                              {"split_impulse", Tuning::split_impulse()},
-                              {"pgs_ngs", Tuning::pgs_ngs()},
-                              {"tgs_ngs", Tuning::tgs_ngs()},
-                              {"xpbd", Tuning::xpbd()}};
-  for (Setting& setting : all) setting.tuning.sleep_s = 0.0f;
+static std::vector<RowSetting> settings() {
+  std::vector<RowSetting> all = {{"soft_step", Tuning::soft_step()},
+                                 {"pgs", Tuning::pgs()},
+                                 {"split_impulse", Tuning::split_impulse()},
+                                 {"pgs_ngs", Tuning::pgs_ngs()},
+                                 {"tgs_ngs", Tuning::tgs_ngs()},
+                                 {"xpbd", Tuning::xpbd()}};
+  for (RowSetting& setting : all) setting.tuning.sleep_s = 0.0f;
   return all;
 }
 
-static std::vector<Setting> velocity_settings() {
-  std::vector<Setting> all = settings();
+static std::vector<RowSetting> velocity_settings() {
+  std::vector<RowSetting> all = settings();
   all.pop_back();
   return all;
 }
@@ -54,7 +54,7 @@ static World<D> balls(const Tuning& tuning, float friction, BodyKind kind, bool 
 /// What is compared: all but the fixed and the particles also aside, where arms that are not quite
 /// along the normal turn a ball that can.
 template <int D>
-static void check_reduction(const Setting& setting, float aside) {
+static void check_reduction(const RowSetting& setting, float aside) {
   constexpr auto kTangents = static_cast<std::uint32_t>(Dim<D>::kTangents);
   World<D> bare = balls<D>(setting.tuning, 0.0f, BodyKind::kDynamic, false, aside);
   World<D> rubbed = balls<D>(setting.tuning, 1.0e-12f, BodyKind::kDynamic, false, aside);
@@ -83,7 +83,7 @@ static void check_reduction(const Setting& setting, float aside) {
 }
 
 TEST(ReducedRows, AreNotBuiltAndChangeNothing) {
-  for (const Setting& setting : settings())
+  for (const RowSetting& setting : settings())
     for (const float aside : {0.0f, 0.05f}) {
       check_reduction<2>(setting, aside);
       check_reduction<3>(setting, aside);
@@ -92,8 +92,8 @@ TEST(ReducedRows, AreNotBuiltAndChangeNothing) {
 
 // m a = f and I a / r = c r N - f r, so a = c g / (1 + I / (m r^2)): 5/7 of c g, a disc 2/3.
 template <int D>
-static void check_rolling(const std::vector<Setting>& of) {
-  for (const Setting& setting : of) {
+static void check_rolling(const std::vector<RowSetting>& of) {
+  for (const RowSetting& setting : of) {
     const float c = 0.1f;
     World<D> world = world_with<D>(setting.tuning, {1.0f, 0.0f, c});
     add_ground<D>(world, up<D>());
@@ -125,8 +125,8 @@ TEST(RollingResistance, SlowsABallUnderXpbdToo) {
 }
 
 template <int D>
-static void check_slope(const std::vector<Setting>& of) {
-  for (const Setting& setting : of)
+static void check_slope(const std::vector<RowSetting>& of) {
+  for (const RowSetting& setting : of)
     for (const float c : {0.24f, 0.27f}) {
       const float theta = 0.25f;  // tan = 0.2553
       Vec<D> normal = Vec<D>::zero();
@@ -157,7 +157,7 @@ TEST(RollingResistance, HoldsABallOnASlopeUnderXpbdToo) {
 
 // Without resistance a ball that rolls without slip goes on as it is.
 template <int D>
-static void check_even_roll(const Setting& setting) {
+static void check_even_roll(const RowSetting& setting) {
   World<D> world = world_with<D>(setting.tuning, {1.0f, 0.0f, 0.0f});
   add_ground<D>(world, up<D>());
   BodyDef<D> def;
@@ -173,7 +173,7 @@ static void check_even_roll(const Setting& setting) {
 }
 
 TEST(Rolling, WithoutResistanceKeepsItsSpeed) {
-  for (const Setting& setting : velocity_settings()) {
+  for (const RowSetting& setting : velocity_settings()) {
     check_even_roll<2>(setting);
     check_even_roll<3>(setting);
   }

@@ -17,7 +17,7 @@ constexpr float kEps = 2.0e-3f;
 constexpr float kTolerance = 2.0e-3f;
 
 template <int D>
-struct Pose {
+struct JointPose {
   Vec<D> position_a;
   Vec<D> centre_offset;
   Rotation<D> rotation_a;
@@ -33,8 +33,8 @@ static Vec<N> random_vec(std::mt19937& random, float size) {
 }
 
 template <int D>
-static Pose<D> random_pose(std::mt19937& random) {
-  Pose<D> pose;
+static JointPose<D> random_pose(std::mt19937& random) {
+  JointPose<D> pose;
   pose.position_a = random_vec<D>(random, 2.0f);
   pose.centre_offset = random_vec<D>(random, 2.0f);
   pose.rotation_a = rotation_by(random_vec<Dim<D>::kSpin>(random, 1.5f));
@@ -44,7 +44,7 @@ static Pose<D> random_pose(std::mt19937& random) {
 
 /// One of the 2 (D + spin) freedoms, moved by `eps`; a first, positions before turns.
 template <int D>
-static Pose<D> moved(Pose<D> pose, int freedom, float eps) {
+static JointPose<D> moved(JointPose<D> pose, int freedom, float eps) {
   const bool of_b = freedom >= Dim<D>::kFreedoms;
   const int i = freedom % Dim<D>::kFreedoms;
   if (i < D) {
@@ -69,7 +69,7 @@ static float entry(const Row<D>& row, int freedom) {
 
 template <int D>
 static JointRows<D> rows_at(const WorldState<D>& state, const Joint<D>& joint,
-                            const Pose<D>& pose) {
+                            const JointPose<D>& pose) {
   JointRows<D> rows;
   rows_of(make_frame(state, joint, pose.position_a, pose.centre_offset, pose.rotation_a,
                      pose.rotation_b, 0.0f),
@@ -79,7 +79,7 @@ static JointRows<D> rows_at(const WorldState<D>& state, const Joint<D>& joint,
 
 /// The wheel's motor turns the angle of b relative to a, which no row's error holds.
 template <int D>
-static float angle_at(const WorldState<D>& state, const Joint<D>& joint, const Pose<D>& pose) {
+static float angle_at(const WorldState<D>& state, const Joint<D>& joint, const JointPose<D>& pose) {
   const Rotation<D> relative = make_frame(state, joint, pose.position_a, pose.centre_offset,
                                           pose.rotation_a, pose.rotation_b, 0.0f)
                                    .relative;
@@ -87,11 +87,12 @@ static float angle_at(const WorldState<D>& state, const Joint<D>& joint, const P
 }
 
 template <int D>
-static void expect_exact(const WorldState<D>& state, const Joint<D>& joint, const Pose<D>& pose) {
+static void expect_exact(const WorldState<D>& state, const Joint<D>& joint,
+                         const JointPose<D>& pose) {
   const JointRows<D> rows = rows_at(state, joint, pose);
   for (int freedom = 0; freedom < 2 * Dim<D>::kFreedoms; ++freedom) {
-    const Pose<D> forth = moved(pose, freedom, kEps);
-    const Pose<D> back = moved(pose, freedom, -kEps);
+    const JointPose<D> forth = moved(pose, freedom, kEps);
+    const JointPose<D> back = moved(pose, freedom, -kEps);
     const JointRows<D> ahead = rows_at(state, joint, forth);
     const JointRows<D> behind = rows_at(state, joint, back);
     const auto compare = [&](const Row<D>& row, float after, float before, const char* name) {
@@ -133,7 +134,7 @@ static Joint<D> joint_of(JointKind kind, std::mt19937& random) {
 
 /// Turns b to C = 0 of the rotation rows, and moves it to C = 0 of the rows across the axis.
 template <int D>
-static void satisfy_slider(const Joint<D>& joint, Pose<D>& pose) {
+static void satisfy_slider(const Joint<D>& joint, JointPose<D>& pose) {
   pose.rotation_b = compose(pose.rotation_a, joint.reference);
   pose.centre_offset = rotate(pose.rotation_a, joint.anchor_a + 0.9f * joint.axis) -
                        rotate(pose.rotation_b, joint.anchor_b);
@@ -164,7 +165,7 @@ static void check_all_kinds() {
       state.bodies.resize(2);
       Joint<D> joint = joint_of<D>(test.kind, random);
       joint.size = {0.9f, 0.9f};
-      Pose<D> pose = random_pose<D>(random);
+      JointPose<D> pose = random_pose<D>(random);
       if (D == 3) satisfy_slider(joint, pose);
       EXPECT_EQ(rows_at(state, joint, pose).count, expected) << static_cast<int>(test.kind);
       EXPECT_LE(rows_at(state, joint, pose).split, expected);
@@ -187,7 +188,7 @@ static void check_coordinates() {
   for (int trial = 0; trial < 12; ++trial) {
     WorldState<D> state;
     state.bodies.resize(2);
-    const Pose<D> pose = random_pose<D>(random);
+    const JointPose<D> pose = random_pose<D>(random);
     Joint<D> spring = joint_of<D>(JointKind::kDistance, random);
     spring.hertz = 2.0f;
     Joint<D> rope = joint_of<D>(JointKind::kDistance, random);
@@ -215,7 +216,7 @@ TEST(Jacobian, OfARackIsExactAndItsAngleCountsWholeTurns) {
   WorldState<2> state;
   state.bodies.resize(2);
   for (int trial = 0; trial < 12; ++trial) {
-    const Pose<2> pose = random_pose<2>(random);
+    const JointPose<2> pose = random_pose<2>(random);
     Joint<2> joint = joint_of<2>(JointKind::kGear, random);
     expect_exact(state, joint, pose);
     joint.axis = Vec<2>::zero();
@@ -244,7 +245,7 @@ TEST(Jacobian, OfCurvesIsExactOnThemAndTheErrorVanishesThere) {
       joint.curve = curve;
       joint.size = {1.5f, 0.8f};
       joint.limit_enabled = trial % 2 == 0 ? 1 : 0;
-      Pose<2> pose = random_pose<2>(random);
+      JointPose<2> pose = random_pose<2>(random);
       const float t = -2.2f + 0.4f * static_cast<float>(trial);
       const Vec<2> at = point_on(curve, joint.size, t);
       pose.centre_offset =
@@ -268,7 +269,7 @@ TEST(Jacobian, OfAPolylineIsExactBesideEdgesAndAroundCorners) {
   const Vec<2> points[] = {{{0.3f, 0.8f}}, {{0.1f, 0.35f}}, {{1.4f, 0.9f}}, {{-1.2f, 0.1f}}};
   const float distances[] = {0.3f, -0.15f, std::sqrt(0.32f), 0.2f};
   for (std::size_t i = 0; i < 4; ++i) {
-    Pose<2> pose = random_pose<2>(random);
+    JointPose<2> pose = random_pose<2>(random);
     pose.centre_offset =
         rotate(pose.rotation_a, points[i]) - rotate(pose.rotation_b, joint.anchor_b);
     EXPECT_NEAR(rows_at(state, joint, pose).rows[0].error, distances[i], 1.0e-5f) << i;

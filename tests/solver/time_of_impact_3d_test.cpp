@@ -17,7 +17,7 @@ static BodySweep<3> at_rest(Vec<3> at = Vec<3>::zero()) {
   return way_of(at, Vec<3>::zero());
 }
 
-struct Pair {
+struct SolidPair {
   Shape<3> a, b;
   BodySweep<3> sweep_a, sweep_b;
   Polyhedra pools = {};
@@ -38,19 +38,19 @@ struct Pair {
 
 TEST(SolidImpact, OfStraightWaysIsExact) {
   // 5000 m/s for a tick of 1/60 s against 0.02 m.
-  const Pair shot{solid_ball(0.05f), solid_box({{0.01f, 2, 2}}),
-                  way_of({{0, 0, 0}}, {{83.3f, 0, 0}}), at_rest({{40, 0, 0}})};
+  const SolidPair shot{solid_ball(0.05f), solid_box({{0.01f, 2, 2}}),
+                       way_of({{0, 0, 0}}, {{83.3f, 0, 0}}), at_rest({{40, 0, 0}})};
   const Impact hit = shot.impact();
   ASSERT_TRUE(hit.hit);
   EXPECT_NEAR(hit.fraction * 83.3f, 40 - 0.01f - 0.05f - 0.009f, 0.0011f);
-  Pair beside = shot;
+  SolidPair beside = shot;
   beside.sweep_a.start.position[1] = 2.07f;
   EXPECT_FALSE(beside.impact().hit);
-  Pair away = shot;
+  SolidPair away = shot;
   away.sweep_a.translation[0] = -83.3f;
   EXPECT_FALSE(away.impact().hit);
-  const Pair boxes{solid_box({{0.3f, 0.2f, 0.1f}}), solid_box({{1, 1, 1}}),
-                   way_of({{-9, 0.4f, 0.2f}}, {{20, 0, 0}}), at_rest()};
+  const SolidPair boxes{solid_box({{0.3f, 0.2f, 0.1f}}), solid_box({{1, 1, 1}}),
+                        way_of({{-9, 0.4f, 0.2f}}, {{20, 0, 0}}), at_rest()};
   ASSERT_TRUE(boxes.impact().hit);
   EXPECT_NEAR(boxes.impact().fraction * 20, 9 - 1.3f - 0.009f, 0.0011f);
 }
@@ -61,11 +61,11 @@ TEST(SolidImpact, OfASpinningRodAgreesWithFineSampling) {
     const float angle = 0.1f + 0.03f * static_cast<float>(i);
     const float distance = 0.3f + 0.017f * static_cast<float>(i);
     // A thin wall beside a rod that spins at 50 rad/s about a slanted axis.
-    Pair pair{i % 2 == 0 ? solid_box({{1, 0.01f, 0.01f}})
-                         : solid_capsule({{-1, 0, 0}}, {{1, 0, 0}}, 0.01f),
-              solid_box({{0.01f, 0.01f, 0.5f}}),
-              way_of({{0, 0, 0}}, {{0.2f, 0.1f, 0}}, {{0.05f, 0.1f, 50.0f / 60}}),
-              at_rest({{distance * std::cos(angle), distance * std::sin(angle), 0}})};
+    SolidPair pair{i % 2 == 0 ? solid_box({{1, 0.01f, 0.01f}})
+                              : solid_capsule({{-1, 0, 0}}, {{1, 0, 0}}, 0.01f),
+                   solid_box({{0.01f, 0.01f, 0.5f}}),
+                   way_of({{0, 0, 0}}, {{0.2f, 0.1f, 0}}, {{0.05f, 0.1f, 50.0f / 60}}),
+                   at_rest({{distance * std::cos(angle), distance * std::sin(angle), 0}})};
     float reached = 2, passed = 2;
     for (int k = 0; k <= 4000 && passed > 1; ++k) {
       const float fraction = static_cast<float>(k) * 2.5e-4f;
@@ -91,8 +91,8 @@ TEST(SolidImpact, MeetsTrianglesFromTheFreeSideAlone) {
     for (const bool swapped : {false, true}) {
       const auto fall = [&](float from, float to, Vec<3> turn) {
         const BodySweep<3> way = way_of({{-1, from, 0}}, {{0, to - from, 0}}, turn);
-        return swapped ? Pair{shape, floor, way, at_rest()}.impact()
-                       : Pair{floor, shape, at_rest(), way}.impact();
+        return swapped ? SolidPair{shape, floor, way, at_rest()}.impact()
+                       : SolidPair{floor, shape, at_rest(), way}.impact();
       };
       const Impact down = fall(2, -2, Vec<3>::zero());
       ASSERT_TRUE(down.hit);
@@ -101,7 +101,8 @@ TEST(SolidImpact, MeetsTrianglesFromTheFreeSideAlone) {
       EXPECT_FALSE(fall(-0.6f, 2, {{0, 3, 0}}).hit);
       EXPECT_FALSE(fall(-0.05f, 1, Vec<3>::zero()).hit);
     }
-  EXPECT_FALSE((Pair{floor, floor, at_rest(), way_of({{0, 1, 0}}, {{0, -2, 0}})}).impact().hit);
+  EXPECT_FALSE(
+      (SolidPair{floor, floor, at_rest(), way_of({{0, 1, 0}}, {{0, -2, 0}})}).impact().hit);
 }
 
 TEST(SolidImpact, StumblesOverNoSeamOfAFlatMesh) {
@@ -109,21 +110,21 @@ TEST(SolidImpact, StumblesOverNoSeamOfAFlatMesh) {
   const Shape<3> box = solid_box({{0.1f, 0.1f, 0.1f}});
   // From beyond the edge on the right, just below the target.
   const auto slides = [&](float drop) {
-    return Pair{floor, box, at_rest(), way_of({{1, 0.109f, 0}}, {{-2, drop, 0}})}.impact().hit;
+    return SolidPair{floor, box, at_rest(), way_of({{1, 0.109f, 0}}, {{-2, drop, 0}})}.impact().hit;
   };
   EXPECT_TRUE(slides(0));
   floor.ghosts = 2;
   floor.vertices[4] = {{2, 0, 0}};
   EXPECT_FALSE(slides(0));
   const BodySweep<3> fall = way_of({{1, 1, 0}}, {{-2.5f, -1.2f, 0}});
-  EXPECT_TRUE((Pair{floor, box, at_rest(), fall}).impact().hit);
+  EXPECT_TRUE((SolidPair{floor, box, at_rest(), fall}).impact().hit);
 }
 
 TEST(SolidImpact, OfABoxThatFallsOnAMeshIsThatOfItsLowestCorner) {
   const Shape<3> floor = solid_triangle({{-9, 0, -9}}, {{-9, 0, 9}}, {{9, 0, 0}});
   const Rotation<3> tilt = turned_about({{0, 0, 1}}, 0.78539816f);
-  const Pair pair{floor, solid_box({{0.5f, 0.5f, 0.5f}}), at_rest(),
-                  way_of({{0, 30, 0}}, {{0, -60, 0}}, {{0, 0, 3.1415927f}}, tilt)};
+  const SolidPair pair{floor, solid_box({{0.5f, 0.5f, 0.5f}}), at_rest(),
+                       way_of({{0, 30, 0}}, {{0, -60, 0}}, {{0, 0, 3.1415927f}}, tilt)};
   const Impact impact = pair.impact();
   ASSERT_TRUE(impact.hit);
   EXPECT_GE(pair.gap_at(impact.fraction), double{kTarget - kTolerance});
@@ -156,7 +157,7 @@ TEST(SolidImpact, NeverPassesThroughNorStopsForNothing) {
   std::mt19937 random(20240229);
   int hits = 0, early = 0, misses = 0;
   for (int i = 0; i < 3000; ++i) {
-    Pair pair;
+    SolidPair pair;
     pair.a = random_shape(random, pair.pools);
     pair.b = random_shape(random, pair.pools);
     pair.sweep_a = random_sweep(random);

@@ -57,15 +57,15 @@ BodySweep<D> sweep(Vec<D> from, Vec<D> translation, Spin<D> turn = Spin<D>::zero
 struct Point {
   double x, y;
 };
-struct Outline {
+struct TestOutline {
   std::vector<Point> points;
   double radius;
 };
 
-static Outline outline_at(const Shape<2>& shape, const BodySweep<2>& way, double fraction) {
+static TestOutline outline_at(const Shape<2>& shape, const BodySweep<2>& way, double fraction) {
   const double angle = std::atan2(double{way.start.rotation[1]}, double{way.start.rotation[0]}) +
                        fraction * double{way.turn[0]};
-  Outline outline{{}, shape.radius};
+  TestOutline outline{{}, shape.radius};
   for (std::uint32_t i = 0; i < shape.vertex_count; ++i) {
     const double x = shape.vertices[i][0];
     const double y = shape.vertices[i][1];
@@ -81,7 +81,7 @@ static double side(Point a, Point b, Point c) {
   return (b.x - a.x) * (c.y - a.y) - (b.y - a.y) * (c.x - a.x);
 }
 
-static bool contains(const Outline& outline, Point p) {
+static bool contains(const TestOutline& outline, Point p) {
   if (outline.points.size() < 3) return false;
   for (std::size_t i = 0; i < outline.points.size(); ++i)
     if (side(outline.points[i], outline.points[(i + 1) % outline.points.size()], p) < 0)
@@ -97,7 +97,7 @@ static double point_to_edge(Point p, Point a, Point b) {
 }
 
 /// Between the surfaces; below -(sum of the radii) the cores overlap.
-static double gap(const Outline& a, const Outline& b) {
+static double gap(const TestOutline& a, const TestOutline& b) {
   double nearest = std::numeric_limits<double>::max();
   for (std::size_t i = 0; i < a.points.size(); ++i)
     for (std::size_t j = 0; j < b.points.size(); ++j) {

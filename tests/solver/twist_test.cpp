@@ -5,18 +5,18 @@ namespace cycloid::solver {
 constexpr float kGravity = 10.0f;
 constexpr float kRadius = 0.5f;
 
-struct Setting {
+struct TwistSetting {
   const char* name;
   Tuning tuning;
 };
 
-static std::vector<Setting> settings() {
-  std::vector<Setting> all = {{"soft_step", Tuning::soft_step()},
-                              {"pgs", Tuning::pgs()},
-                              {"split_impulse", Tuning::split_impulse()},
-                              {"pgs_ngs_block", Tuning::pgs_ngs_block()},
-                              {"tgs_ngs", Tuning::tgs_ngs()}};
-  for (Setting& setting : all) setting.tuning.sleep_s = 0.0f;
+static std::vector<TwistSetting> settings() {
+  std::vector<TwistSetting> all = {{"soft_step", Tuning::soft_step()},
+                                   {"pgs", Tuning::pgs()},
+                                   {"split_impulse", Tuning::split_impulse()},
+                                   {"pgs_ngs_block", Tuning::pgs_ngs_block()},
+                                   {"tgs_ngs", Tuning::tgs_ngs()}};
+  for (TwistSetting& setting : all) setting.tuning.sleep_s = 0.0f;
   return all;
 }
 
@@ -38,7 +38,7 @@ static BodyId add_spinning(World<3>& world, const Vec<3>& velocity, const Vec<3>
 }
 
 /// The spin about the vertical that is left after so many seconds.
-static float spin_after(const Setting& setting, float twist, float spin, float seconds) {
+static float spin_after(const TwistSetting& setting, float twist, float spin, float seconds) {
   World<3> world = ground_of<3>(setting.tuning, {0.6f, 0.0f, 0.0f, twist});
   const BodyId id = add_spinning(world, Vec<3>::zero(), {{0.0f, spin, 0.0f}});
   step(world, static_cast<int>(std::lround(60.0f * seconds)));
@@ -50,7 +50,7 @@ TEST(Twist, StopsASpinningBallAtItsTime) {
   const float twist = 0.02f;
   const float spin = 20.0f;
   const float stops = 0.4f * kRadius * spin / (twist * kGravity);  // 20 s.
-  for (const Setting& setting : settings()) {
+  for (const TwistSetting& setting : settings()) {
     EXPECT_NEAR(spin_after(setting, twist, spin, 0.5f * stops), 0.5f * spin, 0.01f * spin)
         << setting.name;
     EXPECT_GT(spin_after(setting, twist, spin, 0.99f * stops), 0.0f) << setting.name;
@@ -59,14 +59,14 @@ TEST(Twist, StopsASpinningBallAtItsTime) {
 }
 
 TEST(Twist, WithoutResistanceABallSpinsOn) {
-  for (const Setting& setting : settings())
+  for (const TwistSetting& setting : settings())
     EXPECT_NEAR(spin_after(setting, 0.0f, 20.0f, 10.0f), 20.0f, 0.02f) << setting.name;
 }
 
 // Rolling resistance is about axes across the normal, twist about the normal: each leaves the
 // other's motion alone.
 TEST(Twist, AndRollingDoNotMix) {
-  for (const Setting& setting : settings()) {
+  for (const TwistSetting& setting : settings()) {
     const float resistance = 0.02f;
     World<3> rolls = ground_of<3>(setting.tuning, {0.6f, 0.0f, resistance, 0.0f});
     World<3> twists = ground_of<3>(setting.tuning, {0.6f, 0.0f, 0.0f, resistance});
@@ -149,7 +149,7 @@ static float moment_about(const World<3>& world, BodyId id, int axis) {
 
 // Frictionless, so that only the twist slows it: I_y w' = -twist r m g.
 TEST(Twist, SlowsALyingCapsuleByItsOwnMoment) {
-  for (const Setting& setting : settings()) {
+  for (const TwistSetting& setting : settings()) {
     World<3> world = ground_of<3>(setting.tuning, {0.0f, 0.0f, 0.0f, 0.1f});
     BodyDef<3> def;
     def.position = {{0.0f, 0.2f, 0.0f}};
@@ -165,7 +165,7 @@ TEST(Twist, SlowsALyingCapsuleByItsOwnMoment) {
 // m a = f, I_x a / r = c r N - f r: a = c g / (1 + I_x / (m r^2)). It rolls about its long axis, at
 // 30 degrees to the axes of the world.
 TEST(Twist, RollingResistanceOfACapsuleTakesItsMomentAboutItsAxis) {
-  for (Setting setting : settings()) {
+  for (TwistSetting setting : settings()) {
     // One sweep of Gauss-Seidel rocks a capsule on its two points, with resistance or without.
     setting.tuning.sweeps = std::max(setting.tuning.sweeps, 2u);
     const float c = 0.05f;
