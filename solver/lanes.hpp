@@ -72,14 +72,23 @@ struct Lanes {
   }
 };
 
-/// Whether any lane is above 0: the one question across lanes, and its answer has no order.
+/// Whether any lane is above 0, and whether all are: the only questions across lanes, because their
+/// answers have no order.
 template <int W>
 bool any_above_zero(Lanes<W> a) {
   float lanes[W];
   a.store(lanes);
-  bool any = false;
-  for (const float lane : lanes) any = any || lane > 0.0f;
-  return any;
+  for (const float lane : lanes)
+    if (lane > 0.0f) return true;
+  return false;
+}
+template <int W>
+bool all_above_zero(Lanes<W> a) {
+  float lanes[W];
+  a.store(lanes);
+  for (const float lane : lanes)
+    if (!(lane > 0.0f)) return false;
+  return true;
 }
 
 inline float max(float a, float b) {

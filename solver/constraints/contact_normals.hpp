@@ -66,15 +66,6 @@ void solve_pushing(const NormalProblem<N, L>& p, int count, std::uint32_t pushin
   }
 }
 
-template <int W>
-bool all_positive(const Lanes<W>& value) {
-  float values[W];
-  value.store(values);
-  for (const float each : values)
-    if (!(each > 0.0f)) return false;
-  return true;
-}
-
 /// Solves it by trying which rows push, the largest sets first, and taking the first whose solution
 /// leaves a residual of at most 1e-5 of the impulses' size. That ends, takes the same steps in
 /// every lane, and does not depend on where it starts; pivoting would branch by lane, and sweeps
@@ -109,7 +100,7 @@ void solve_normals(const NormalProblem<N, Lanes<W>>& p, int count, Lanes<W> (&x)
     solve_pushing(p, count, pushing, found);
     for (int i = 0; i < count; ++i) found[i] = max(found[i], zero);
     take_if_good(found);
-    if (all_positive(usable)) return;  // No later set would be taken in any lane.
+    if (all_above_zero(usable)) return;  // No later set would be taken in any lane.
   }
   L none[N];
   for (int i = 0; i < count; ++i) none[i] = zero;

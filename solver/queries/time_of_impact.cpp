@@ -1,23 +1,10 @@
 #include "solver/queries/time_of_impact.hpp"
 
+#include "solver/motion.hpp"
 #include "solver/queries/separation.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
-
-static Rotation<2> rotation_by(const Vec<1>& turn) {
-  Rotation<2> rotation;
-  sin_cos(turn[0], rotation[1], rotation[0]);
-  return rotation;
-}
-static Rotation<3> rotation_by(const Vec<3>& turn) {
-  const float angle = length(turn);
-  float sine = 0.0f;
-  float cosine = 1.0f;
-  sin_cos(0.5f * angle, sine, cosine);
-  const Vec<3> axis = normalized_or(turn, Vec<3>::zero());
-  return {{sine * axis[0], sine * axis[1], sine * axis[2], cosine}};
-}
 
 template <int D>
 Pose<D> pose_at(const BodySweep<D>& sweep, float fraction) {

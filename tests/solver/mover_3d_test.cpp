@@ -5,7 +5,7 @@
 
 #include "solver/character/mover.hpp"
 #include "tests/solver/mover_fixture.hpp"
-#include "tests/solver/solids_fixture.hpp"
+#include "tests/solver/query_3d_fixture.hpp"
 
 namespace cycloid::solver {
 

@@ -145,7 +145,7 @@ TYPED_TEST(Particles, OneThatLandsAndSticksHasNotMovedAlongTheGround) {
   add_ground<D>(scene.world, up<D>());
   scene.gravity = Vec<D>::zero();
   scene.tuning.substeps = 1;
-  scene.add_particle(spot<D>(0.0f, 0.01f + 5.0f * kTick));
+  scene.add_particle(spot<D>(0.0f, 0.01f + 5.0f * kParticleTick));
   scene.particles[0].velocity = spot<D>(1.0f, -10.0f);
   scene.run(1);
   EXPECT_NEAR(scene.particles[0].position[0], 0.0f, 1.0e-8f);
@@ -252,7 +252,7 @@ TYPED_TEST(Particles, BeltTakesAParticleAlong) {
   for (int tick = 0; tick < 60; ++tick) {
     step(scene.world, 1);
     scene.run(1);
-    const float expected = std::min(6.0f * kTick * static_cast<float>(tick + 1), 2.0f);
+    const float expected = std::min(6.0f * kParticleTick * static_cast<float>(tick + 1), 2.0f);
     EXPECT_NEAR(scene.particles[0].velocity[0], expected, 0.03f) << tick;
   }
   EXPECT_NEAR(scene.particles[0].velocity[0], 2.0f, 0.02f);

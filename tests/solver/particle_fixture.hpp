@@ -6,7 +6,7 @@
 
 namespace cycloid::solver {
 
-inline constexpr float kTick = 1.0f / 60.0f;
+inline constexpr float kParticleTick = 1.0f / 60.0f;
 
 template <int D>
 Vec<D> spot(float x, float y) {
@@ -47,7 +47,8 @@ struct ParticleScene {
   }
   void run(int ticks) {
     for (int i = 0; i < ticks; ++i)
-      move_particles<D>(kTick, gravity, tuning, world.state(), particles, links, pins, scratch);
+      move_particles<D>(kParticleTick, gravity, tuning, world.state(), particles, links, pins,
+                        scratch);
   }
   float stretch() const {
     float worst = 0.0f;

@@ -1,5 +1,5 @@
 #include "tests/solver/particle_fixture.hpp"
-#include "tests/solver/solids_fixture.hpp"
+#include "tests/solver/query_3d_fixture.hpp"
 
 namespace cycloid::solver {
 

@@ -12,7 +12,7 @@ TYPED_TEST(Particles, LinkSharesItsErrorByInverseMassAndLeavesNone) {
     std::vector<ParticleMotion<D>> motions(2, {Vec<D>::zero(), Vec<D>::zero(), 1.0f});
     motions[0].inverse_mass = weight;
     std::vector<float> lambdas(1);
-    project_links<D>(kTick, scene.particles, scene.links, motions, lambdas);
+    project_links<D>(kParticleTick, scene.particles, scene.links, motions, lambdas);
     const float share = weight / (weight + 1.0f);  // Of an error of 2 m.
     EXPECT_NEAR(length(motions[0].displacement), 2.0f * share, 1.0e-6f);
     EXPECT_NEAR(length(motions[1].displacement), 2.0f * (1.0f - share), 1.0e-6f);
@@ -28,7 +28,7 @@ TYPED_TEST(Particles, FallLikeSymplecticEulerAlsoFarFromTheOrigin) {
     scene.tuning.substeps = 4;
     scene.add_particle(spot<D>(far, far));
     scene.run(60);
-    const float h = kTick / static_cast<float>(scene.tuning.substeps);
+    const float h = kParticleTick / static_cast<float>(scene.tuning.substeps);
     // x(t) = g t^2 / 2 + g h t / 2. At 4 km a place of a float is 0.5 mm.
     EXPECT_NEAR(scene.particles[0].position[1] - far, -5.0f - 5.0f * h, far > 0.0f ? 1e-2f : 2e-5f);
     EXPECT_NEAR(scene.particles[0].velocity[1], -10.0f, 1.0e-4f);
@@ -44,7 +44,7 @@ TYPED_TEST(Particles, VelocityIsDisplacementPerTime) {
   scene.add_link(0, 1, 0.7f);  // Coincident: parts along axis 0, bent by gravity.
   scene.run(1);
   for (int i = 0; i < D; ++i)
-    EXPECT_EQ(scene.particles[1].velocity[i], scene.particles[1].position[i] / kTick);
+    EXPECT_EQ(scene.particles[1].velocity[i], scene.particles[1].position[i] / kParticleTick);
   EXPECT_GT(length(scene.particles[1].velocity), 1.0f);
 }
 

@@ -3,7 +3,7 @@
 #include "solver/queries/casting.hpp"
 #include "solver/queries/query.hpp"
 #include "tests/solver/query_fixture.hpp"
-#include "tests/solver/solids_fixture.hpp"
+#include "tests/solver/query_3d_fixture.hpp"
 
 namespace cycloid::solver {
 

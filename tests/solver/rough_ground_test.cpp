@@ -68,9 +68,9 @@ static std::vector<Dropped> dropped() {
         {{radius * std::cos(angle), i < 6 ? -0.2f : 0.25f, radius * std::sin(angle)}});
   }
   const Vec<3> end = {{0.0f, 0.0f, 0.3f}};
-  return {{"box", solid_box(half), corners},
+  return {{"box", box_def(half), corners},
           {"hull", hull, hull.points},
-          {"capsule", solid_capsule(-end, end, 0.15f), {-end, end}},
+          {"capsule", capsule_def(-end, end, 0.15f), {-end, end}},
           {"ball", ball<3>(0.25f), {Vec<3>::zero()}}};
 }
 

@@ -4,7 +4,7 @@
 #include <cstring>
 
 #include "solver/queries/solid_queries.hpp"
-#include "tests/solver/solids_fixture.hpp"
+#include "tests/solver/query_3d_fixture.hpp"
 
 namespace cycloid::solver {
 
@@ -13,7 +13,7 @@ static Core<3> core_at(const Shape<3>& shape, Vec<3> position,
   return core_of(shape, rotation, position, pools);
 }
 
-static void expect_vector(const Vec<3>& found, const Vec<3>& wanted, float tolerance = kFlat) {
+static void expect_vector(const Vec<3>& found, const Vec<3>& wanted, float tolerance = kExact) {
   for (int i = 0; i < 3; ++i) EXPECT_NEAR(found[i], wanted[i], tolerance) << "axis " << i;
 }
 
@@ -21,13 +21,13 @@ TEST(SolidSeparation, OfBoxesIsThatOfTheirNearestFeatures) {
   const Core<3> a = core_at(solid_box({{1, 2, 3}}), {{0, 0, 0}});
   const Separation<3> face =
       separation_of(a, core_at(solid_box({{0.5f, 0.5f, 0.5f}}), {{3, 0, 0}}));
-  EXPECT_NEAR(face.distance, 1.5f, kFlat);
+  EXPECT_NEAR(face.distance, 1.5f, kExact);
   expect_vector(face.normal, {{1, 0, 0}});
-  EXPECT_NEAR(face.point_a[0], 1.0f, kFlat);
-  EXPECT_NEAR(face.point_b[0], 2.5f, kFlat);
+  EXPECT_NEAR(face.point_a[0], 1.0f, kExact);
+  EXPECT_NEAR(face.point_b[0], 2.5f, kExact);
   const Separation<3> corner =
       separation_of(a, core_at(solid_box({{1, 1, 1}}), {{4, 5, 5}}));  // (2, 2, 1) apart.
-  EXPECT_NEAR(corner.distance, 3.0f, kFlat);
+  EXPECT_NEAR(corner.distance, 3.0f, kExact);
   expect_vector(corner.normal, {{2 / 3.0f, 2 / 3.0f, 1 / 3.0f}});
   expect_vector(corner.point_a, {{1, 2, 3}});
   expect_vector(corner.point_b, {{3, 4, 4}});
@@ -38,7 +38,7 @@ TEST(SolidSeparation, OfBoxesIsThatOfTheirNearestFeatures) {
   const Core<3> above = core_at(
       solid_box({{5, 1, 1}}, {{0, 0, 0}}, turned_about({{1, 0, 0}}, quarter)), {{0.3f, 4, 0.2f}});
   const Separation<3> edges = separation_of(ridge, above);
-  EXPECT_NEAR(edges.distance, 4 - 2 * std::sqrt(2.0f), kFlat);
+  EXPECT_NEAR(edges.distance, 4 - 2 * std::sqrt(2.0f), kExact);
   expect_vector(edges.normal, {{0, 1, 0}});
   expect_vector(edges.point_a, {{0, std::sqrt(2.0f), 0.2f}}, 2e-6f);
 }
@@ -48,7 +48,7 @@ TEST(SolidSeparation, OfCrossingSolidsIsTheLeastDepth) {
   const Separation<3> face =
       separation_of(a, core_at(solid_box({{0.5f, 0.5f, 0.5f}}), {{0.2f, 2.4f, 0.1f}}));
   EXPECT_TRUE(face.crossing);
-  EXPECT_NEAR(face.distance, -0.1f, kFlat);
+  EXPECT_NEAR(face.distance, -0.1f, kExact);
   expect_vector(face.normal, {{0, 1, 0}});
   const float quarter = 0.78539816f;
   const Core<3> ridge =
@@ -63,10 +63,10 @@ TEST(SolidSeparation, OfCrossingSolidsIsTheLeastDepth) {
   const Core<3> rod = core_at(solid_capsule({{-5, 0, 0}}, {{5, 0, 0}}, 0.1f), {{0, 1.9f, 2.8f}});
   const Separation<3> pierced = separation_of(a, rod);
   EXPECT_TRUE(pierced.crossing);
-  EXPECT_NEAR(pierced.distance, -0.1f - 0.1f, kFlat);
+  EXPECT_NEAR(pierced.distance, -0.1f - 0.1f, kExact);
   expect_vector(pierced.normal, {{0, 1, 0}});
   const Separation<3> turned = separation_of(rod, a);
-  EXPECT_NEAR(turned.distance, -0.2f, kFlat);
+  EXPECT_NEAR(turned.distance, -0.2f, kExact);
   expect_vector(turned.normal, {{0, -1, 0}});
 }
 
@@ -74,16 +74,16 @@ TEST(SolidSeparation, OfATriangleKnowsItsEdgesAndItsNormal) {
   const Core<3> t = core_at(solid_triangle({{0, 0, 0}}, {{0, 0, 1}}, {{1, 0, 0}}), {{0, 0, 0}});
   expect_vector(t.normals[0], {{0, 1, 0}});
   const auto ball = [](Vec<3> at) { return core_at(solid_ball(0.25f), at); };
-  EXPECT_NEAR(separation_of(t, ball({{0.2f, 1, 0.2f}})).distance, 0.75f, kFlat);
-  EXPECT_NEAR(separation_of(t, ball({{0.2f, -1, 0.2f}})).distance, 0.75f, kFlat);
+  EXPECT_NEAR(separation_of(t, ball({{0.2f, 1, 0.2f}})).distance, 0.75f, kExact);
+  EXPECT_NEAR(separation_of(t, ball({{0.2f, -1, 0.2f}})).distance, 0.75f, kExact);
   expect_vector(separation_of(t, ball({{0.2f, -1, 0.2f}})).normal, {{0, -1, 0}});
   const Separation<3> edge = separation_of(t, ball({{0.4f, 4, -3}}));
-  EXPECT_NEAR(edge.distance, 4.75f, kFlat);
+  EXPECT_NEAR(edge.distance, 4.75f, kExact);
   expect_vector(edge.point_a, {{0.4f, 0, 0}});
   const Separation<3> through =
       separation_of(t, core_at(solid_box({{0.1f, 1, 0.1f}}), {{0.2f, 0.5f, 0.2f}}));
   EXPECT_TRUE(through.crossing);
-  EXPECT_NEAR(through.distance, -0.5f, kFlat);
+  EXPECT_NEAR(through.distance, -0.5f, kExact);
   expect_vector(through.normal, {{0, 1, 0}});
 }
 

@@ -1,4 +1,4 @@
-#include "tests/solver/solid_fixture.hpp"
+#include "tests/solver/manifold_3d_fixture.hpp"
 
 namespace cycloid::solver {
 

@@ -42,7 +42,7 @@ static BodyId add_box_stack(World<3>& world, int count) {
   BodyId last;
   for (int i = 0; i < count; ++i)
     last = add_at<3>(world, {{0.0f, 0.5f + static_cast<float>(i), 0.0f}},
-                     solid_box({{0.5f, 0.5f, 0.5f}}));
+                     box_def({{0.5f, 0.5f, 0.5f}}));
   return last;
 }
 
@@ -114,8 +114,8 @@ TEST(IsolatedPile, KeepsItsMomentumToRounding) {
     def.spin = {{0.3f * place[1], 0.2f, -0.4f * place[0]}};
     const ShapeDef<3> shape =
         i % 3 == 0 ? ball<3>(0.5f)
-                   : (i % 3 == 1 ? solid_box({{0.5f, 0.4f, 0.3f}})
-                                 : solid_capsule({{-0.3f, 0, 0}}, {{0.3f, 0, 0}}, 0.3f));
+                   : (i % 3 == 1 ? box_def({{0.5f, 0.4f, 0.3f}})
+                                 : capsule_def({{-0.3f, 0, 0}}, {{0.3f, 0, 0}}, 0.3f));
     add(world, def, shape);
   }
   const Momentum start = momentum_of(world);
@@ -154,7 +154,7 @@ struct Twin {
     deep.position = {{x, y, 0.0f}};
     deep.velocity = {{speed, 0.0f, 0.0f}};
     return {add(plane, flat, box(half_x, half_y)),
-            add(space, deep, solid_box({{half_x, half_y, 0.5f}}))};
+            add(space, deep, box_def({{half_x, half_y, 0.5f}}))};
   }
   /// The largest difference of any position, m, of those bodies.
   float difference(const std::vector<Ids>& ids) const {

@@ -8,14 +8,14 @@ namespace cycloid::solver {
 
 /// Shapes of space that many tests need.
 
-inline ShapeDef<3> solid_box(const Vec<3>& half) {
+inline ShapeDef<3> box_def(const Vec<3>& half) {
   ShapeDef<3> shape;
   shape.kind = ShapeKind::kBox;
   shape.half = half;
   return shape;
 }
 
-inline ShapeDef<3> solid_capsule(const Vec<3>& from, const Vec<3>& to, float radius) {
+inline ShapeDef<3> capsule_def(const Vec<3>& from, const Vec<3>& to, float radius) {
   ShapeDef<3> shape;
   shape.kind = ShapeKind::kCapsule;
   shape.points = {from, to};

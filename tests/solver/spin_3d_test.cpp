@@ -79,7 +79,7 @@ TEST(IntermediateAxis, FlipsWithThePeriodOfEulersEquations) {
     World<3> world = make_world(WorldDef<3>{});
     BodyDef<3> def;
     def.spin = {{disturbance, 5.0f, disturbance}};
-    const BodyId id = add(world, def, solid_box({{1.0f, 0.6f, 0.2f}}));
+    const BodyId id = add(world, def, box_def({{1.0f, 0.6f, 0.2f}}));
     const FreeMotion start = motion_of(world, id);
     const std::vector<double> flips = flips_of(world, id, 3600);
     ASSERT_GE(flips.size(), 5u) << disturbance;
@@ -97,7 +97,7 @@ TEST(LongRod, SpinningFastKeepsItsEnergy) {
   BodyDef<3> def;
   def.spin = {{100.0f, 1.0f, 0.5f}};
   // Moments 1 : 100 : 100, where the explicit gyroscopic term diverges within a second.
-  const BodyId id = add(world, def, solid_box({{1.0f, 0.0709f, 0.0709f}}));
+  const BodyId id = add(world, def, box_def({{1.0f, 0.0709f, 0.0709f}}));
   const FreeMotion start = motion_of(world, id);
   EXPECT_NEAR(start.moments[1] / start.moments[0], 100.0, 1.0);
   step(world, 3600);
@@ -115,7 +115,7 @@ TEST(Needle, SpinningAcrossItsLengthKeepsItsEnergy) {
       World<3> world = make_world(WorldDef<3>{});
       BodyDef<3> def;
       def.spin = spin;
-      const BodyId id = add(world, def, solid_box({{0.5f, thickness, 0.02f}}));
+      const BodyId id = add(world, def, box_def({{0.5f, thickness, 0.02f}}));
       const FreeMotion start = motion_of(world, id);
       step(world, 3600);
       const FreeMotion end = motion_of(world, id);
@@ -142,7 +142,7 @@ struct Top {
     def.position = rotate(rotation, Vec<3>{{0.0f, static_cast<float>(kArm), 0.0f}});
     def.spin = spin;
     def.velocity = cross(spin, def.position);
-    plate = add(world, def, solid_box({{0.4f, 0.05f, 0.4f}}));
+    plate = add(world, def, box_def({{0.4f, 0.05f, 0.4f}}));
     JointDef<3> joint;
     joint.body_a = pivot;
     joint.body_b = plate;

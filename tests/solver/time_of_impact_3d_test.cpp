@@ -1,7 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/queries/time_of_impact.hpp"
-#include "tests/solver/solids_fixture.hpp"
+#include "tests/solver/query_3d_fixture.hpp"
 #include "tests/solver/world_fixture.hpp"
 
 namespace cycloid::solver {

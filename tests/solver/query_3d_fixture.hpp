@@ -10,12 +10,13 @@
 
 #include "solver/queries/query.hpp"
 #include "solver/queries/separation.hpp"
+#include "tests/solver/space_fixture.hpp"
 
 namespace cycloid::solver {
 
 /// Shapes in space made without a world, random poses, and a reference in double precision.
 
-inline constexpr float kFlat = 1e-6f;
+inline constexpr float kExact = 1e-6f;
 
 /// Raw generator words alone: the distributions of <random> differ between libraries.
 inline float uniform(std::mt19937& random, float lower, float upper) {
@@ -31,11 +32,6 @@ inline Rotation<3> random_rotation(std::mt19937& random) {
   Rotation<3> q;
   for (float& value : q.v) value = uniform(random, -1.0f, 1.0f);
   return normalized_or(q, identity_rotation<3>());
-}
-
-inline Rotation<3> turned_about(Vec<3> axis, float angle) {
-  const float sine = std::sin(0.5f * angle);
-  return {{sine * axis[0], sine * axis[1], sine * axis[2], std::cos(0.5f * angle)}};
 }
 
 inline Shape<3> solid_ball(float radius) {
