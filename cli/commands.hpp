@@ -18,6 +18,9 @@ struct Action {
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& summary,
                       Action& action);
 
+/// `--lanes`, beside a command's `--workers`.
+void add_lanes_option(CLI::App* command, int& lanes);
+
 // One file each. Every one of them adds its options to `app` and, when chosen, sets `action.run`.
 void add_run(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);

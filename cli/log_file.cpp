@@ -71,7 +71,7 @@ void LogWriter::write() {
 }
 
 Replayed replay(const LoadedLog& loaded, const ReplayOptions& options) {
-  scenes::Simulation simulation = make_simulation(loaded.scene, options.workers);
+  scenes::Simulation simulation = make_simulation(loaded.scene, options.workers, options.lanes);
   Replayed result;
   result.digest = simulation.digest();
   std::vector<scenes::SeatInput> inputs;
@@ -99,13 +99,16 @@ std::string divergence_text(const Divergence& divergence) {
                                    : "nothing, the world does not step: " + divergence.fault);
 }
 
-scenes::Simulation make_simulation(const scenes::Scene& scene, int workers) {
+scenes::Simulation make_simulation(const scenes::Scene& scene, int workers, int lanes) {
   auto simulation = scenes::Simulation::create(scene);
   if (!simulation.ok()) {
     throw Failure(kExitCorrupt, "the scene cannot run: " + error_text(simulation.error()));
   }
   if (const solver::Error error = simulation.value().set_workers(workers); !error.ok()) {
     throw Failure(kExitUsage, "--workers: " + error_text(error));
+  }
+  if (const solver::Error error = simulation.value().set_lanes(lanes); !error.ok()) {
+    throw Failure(kExitUsage, "--lanes: " + error_text(error));
   }
   return std::move(simulation.value());
 }

@@ -13,6 +13,9 @@
 
 namespace cycloid::cli {
 
+/// As many as a world takes by itself.
+inline constexpr int kLanesDefault = 4;
+
 /// A log with the scene that it carries.
 struct LoadedLog {
   std::string file;
@@ -60,6 +63,7 @@ struct Replayed {
 struct ReplayOptions {
   std::uint64_t to = 0;  ///< Last tick; 0: all.
   int workers = 1;
+  int lanes = kLanesDefault;
   std::function<void(std::uint64_t tick, std::uint64_t digest)> on_tick;
 };
 
@@ -71,7 +75,8 @@ Replayed replay(const LoadedLog& loaded, const ReplayOptions& options);
 std::string divergence_text(const Divergence& divergence);
 
 /// A simulation of the scene, or a Failure that says why there is none.
-scenes::Simulation make_simulation(const scenes::Scene& scene, int workers);
+scenes::Simulation make_simulation(const scenes::Scene& scene, int workers,
+                                   int lanes = kLanesDefault);
 
 /// What a step that failed means: "kFaulted position".
 std::string error_text(const solver::Error& error);

@@ -17,6 +17,12 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   return command;
 }
 
+void add_lanes_option(CLI::App* command, int& lanes) {
+  command->add_option("--lanes", lanes, "Contacts an instruction: 1, 4, 8 or 16; changes no bit")
+      ->capture_default_str()
+      ->check(CLI::IsMember({1, 4, 8, 16}));
+}
+
 static Exit parse_and_run(int argc, char** argv) {
   CLI::App app("Cycloid: a deterministic lockstep physics server", "cycloid");
   app.footer(kExitCodesText);
@@ -31,7 +37,9 @@ static Exit parse_and_run(int argc, char** argv) {
   add_verify(app, action);
   add_diff(app, action);
   add_scene(app, action);
+#ifdef CYCLOID_EXPERIMENTS
   add_experiments(app, action);
+#endif
   add_version(app, action);
   try {
     app.parse(argc, argv);

@@ -13,6 +13,7 @@ struct ReplayCommand {
   std::uint64_t to = 0;
   std::uint64_t digest_every = 0;
   int workers = 1;
+  int lanes = kLanesDefault;
 };
 
 /// A log that was not closed is a match that was killed: its ticks are good. One that is torn has
@@ -31,6 +32,7 @@ Exit replay_log(const ReplayCommand& options, bool json) {
   ReplayOptions replaying;
   replaying.to = options.to;
   replaying.workers = options.workers;
+  replaying.lanes = options.lanes;
   replaying.on_tick = [&](std::uint64_t tick, std::uint64_t digest) {
     if (json || options.digest_every == 0 || tick % options.digest_every != 0) return;
     std::cout << tick << ' ' << hex16(digest) << '\n';
@@ -68,6 +70,7 @@ void add_replay(CLI::App& app, Action& action) {
   command->add_option("--workers", options->workers, "Threads; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  add_lanes_option(command, options->lanes);
   command->callback([options, &action] {
     action.run = [=, &action] { return replay_log(*options, action.json); };
   });

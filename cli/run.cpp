@@ -16,6 +16,7 @@ struct RunOptions {
   std::uint64_t ticks = 600;
   std::uint64_t digest_every = 60;
   int workers = 1;
+  int lanes = kLanesDefault;
   std::string log;
   std::string poses;
 };
@@ -58,7 +59,7 @@ class PoseTable {
 
 Exit run_scene(const RunOptions& options, bool json) {
   const scenes::Scene scene = load_scene(options.scene);
-  scenes::Simulation simulation = make_simulation(scene, options.workers);
+  scenes::Simulation simulation = make_simulation(scene, options.workers, options.lanes);
   std::optional<LogWriter> log;
   if (!options.log.empty()) log.emplace(options.log, scene);
 
@@ -112,6 +113,7 @@ void add_run(CLI::App& app, Action& action) {
   command->add_option("--workers", options->workers, "Threads; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  add_lanes_option(command, options->lanes);
   command->add_option("--log", options->log, "Write a log of the run to this file");
   command->add_option("--poses", options->poses, "Write every body's pose at every tick as CSV");
   command->callback([options, &action] {

@@ -15,6 +15,7 @@ struct VerifyOptions {
   std::vector<std::string> paths;
   bool allow_open = false;
   int workers = 1;
+  int lanes = kLanesDefault;
 };
 
 struct Verdict {
@@ -53,6 +54,7 @@ Verdict verify_log(const std::string& file, const VerifyOptions& options) {
     const LoadedLog loaded = load_log(file);
     ReplayOptions replaying;
     replaying.workers = options.workers;
+    replaying.lanes = options.lanes;
     const Replayed replayed = replay(loaded, replaying);
     const bool open = loaded.log.state == protocol::LogState::kOpen;
     verdict.ticks = replayed.ticks;
@@ -113,6 +115,7 @@ void add_verify(CLI::App& app, Action& action) {
   command->add_option("--workers", options->workers, "Threads; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  add_lanes_option(command, options->lanes);
   command->callback([options, &action] {
     action.run = [=, &action] { return verify_logs(*options, action.json); };
   });

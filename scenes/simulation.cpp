@@ -70,6 +70,10 @@ solver::Error Simulation::set_workers(int workers) {
   return running_->visit([&](auto& built) { return built.world.set_workers(workers); });
 }
 
+solver::Error Simulation::set_lanes(int lanes) {
+  return running_->visit([&](auto& built) { return built.world.set_lanes(lanes); });
+}
+
 solver::Error Simulation::step(std::span<const SeatInput> inputs) {
   if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
   return running_->visit([&](auto& built) {

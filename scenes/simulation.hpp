@@ -59,6 +59,8 @@ class Simulation {
   float tick_s() const;
   /// 1 to 64 threads; changes no bit.
   solver::Error set_workers(int workers);
+  /// 1, 4, 8 or 16 contacts an instruction, else kInvalid "lanes"; changes no bit.
+  solver::Error set_lanes(int lanes);
 
   /// Applies the controls of every seat, in seat order, then steps once.
   /// @pre inputs.size() == seats(); otherwise kInvalid "inputs" and nothing has changed.

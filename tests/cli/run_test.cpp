@@ -22,6 +22,23 @@ TEST(Run, PrintsTickAndDigestTheSameEveryTimeForAnyWorkerCount) {
   EXPECT_EQ(second.out, first.out);
 }
 
+TEST(Run, ReplayAndVerifyTakeAnyLaneWidthAndNoOther) {
+  const Folder folder;
+  const std::string log = folder.file("a.cylog");
+  const Ran first = run_program({"run", "pyramid-3d", "--ticks", "9", "--log", log});
+  ASSERT_EQ(first.exit, 0) << first.err;
+  for (const char* lanes : {"1", "8", "16"}) {
+    EXPECT_EQ(run_program({"run", "pyramid-3d", "--ticks", "9", "--lanes", lanes}).out, first.out);
+    EXPECT_EQ(run_program({"replay", log, "--lanes", lanes}).exit, 0);
+    EXPECT_EQ(run_program({"verify", log, "--lanes", lanes}).exit, 0);
+  }
+  for (const char* command : {"run", "replay", "verify"}) {
+    const Ran bad = run_program({command, log, "--lanes", "3"});
+    EXPECT_EQ(bad.exit, 2);
+    EXPECT_THAT(bad.err, HasSubstr("--lanes"));
+  }
+}
+
 TEST(Run, JsonHasTheSameDigests) {
   const Ran text = run_program({"run", "half-pipe", "--ticks", "20", "--digest-every", "10"});
   const Ran json =

@@ -35,13 +35,6 @@ void step(const Scene& scene, Simulation& simulation) {
   ASSERT_TRUE(error.ok()) << error.field << " at tick " << simulation.tick() + 1;
 }
 
-void set_lanes(Simulation& simulation, int lanes) {
-  const solver::Error error = simulation.planar() != nullptr
-                                  ? simulation.planar()->set_lanes(lanes)
-                                  : simulation.spatial()->set_lanes(lanes);
-  ASSERT_TRUE(error.ok());
-}
-
 std::string hex(std::uint64_t digest) {
   std::ostringstream text;
   text << std::hex << std::setw(16) << std::setfill('0') << digest;
@@ -86,8 +79,8 @@ TEST_P(Catalogue, WorkersAndLanesAreInvisible) {
   for (const Setting setting : {Setting{2, 4}, Setting{3, 1}, Setting{1, 8}, Setting{8, 16}}) {
     Simulation one = start(scene);
     Simulation other = start(scene);
-    set_lanes(one, 4);
-    set_lanes(other, setting.lanes);
+    ASSERT_TRUE(one.set_lanes(4).ok());
+    ASSERT_TRUE(other.set_lanes(setting.lanes).ok());
     ASSERT_TRUE(other.set_workers(setting.workers).ok());
     for (int tick = 1; tick <= 60; ++tick) {
       step(scene, one);

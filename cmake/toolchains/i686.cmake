@@ -1,0 +1,3 @@
+set(CMAKE_SYSTEM_PROCESSOR i686)
+set(CYCLOID_TRIPLE i686-linux-gnu)
+include(${CMAKE_CURRENT_LIST_DIR}/linux.cmake)
