@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/files.hpp"
 #include "cli/log_file.hpp"
 #include "cli/output.hpp"
 
@@ -27,13 +27,17 @@ struct Side {
   scenes::Scene scene;
   scenes::Simulation simulation;
 
+  /// @pre There is a log, and 1 <= tick <= ticks().
+  const protocol::LogTick& recorded(std::uint64_t tick) const {
+    return log->log.ticks[static_cast<std::size_t>(tick - 1)];
+  }
   std::uint64_t ticks(std::uint64_t otherwise) const {
     return log ? log->log.ticks.size() : otherwise;
   }
   std::vector<scenes::SeatInput> inputs(std::uint64_t tick) const {
     std::vector<scenes::SeatInput> inputs;
     for (int seat = 0; seat < simulation.seats(); ++seat) {
-      inputs.push_back(log ? log->log.ticks[tick - 1].frame.seats[std::size_t(seat)].input
+      inputs.push_back(log ? recorded(tick).frame.seats[std::size_t(seat)].input
                            : scenes::scripted_input(scene, seat, tick));
     }
     return inputs;
@@ -42,9 +46,8 @@ struct Side {
 
 /// A file is a log when it says so by its name, or when it reads as one.
 bool is_log(const std::string& what) {
-  std::error_code error;
-  if (std::filesystem::path(what).extension() == ".cylog") return true;
-  if (!std::filesystem::is_regular_file(what, error)) return false;
+  if (what.ends_with(".cylog")) return true;
+  if (!kind_of(what).is_file) return false;
   return protocol::read_log(read_file(what)).state != protocol::LogState::kCorrupt;
 }
 
@@ -117,8 +120,8 @@ bool step_both(Side& a, Side& b, std::uint64_t tick, Found& found) {
 /// Where two logs recorded unlike digests for what steps alike here, one was made by another world.
 bool same_record(const Side& a, const Side& b, std::uint64_t tick, Found& found) {
   if (!a.log || !b.log) return true;
-  const std::uint64_t digest_a = a.log->log.ticks[tick - 1].digest;
-  const std::uint64_t digest_b = b.log->log.ticks[tick - 1].digest;
+  const std::uint64_t digest_a = a.recorded(tick).digest;
+  const std::uint64_t digest_b = b.recorded(tick).digest;
   if (digest_a == digest_b) return true;
   found.other = "recorded digests differ at tick " + std::to_string(tick) + ": " + hex16(digest_a) +
                 " against " + hex16(digest_b) + "; replayed here both are " +
