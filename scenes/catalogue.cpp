@@ -116,7 +116,8 @@ Loaded load_file(const std::string& file) {
   if (size > (64 << 20)) return mistake("is larger than 64 MiB");
   stream.seekg(0);
   std::string bytes(static_cast<std::size_t>(size), '\0');
-  if (!stream.read(bytes.data(), size)) return mistake("cannot be read");
+  if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
+    return mistake("cannot be read");
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
   if (first != std::string::npos && bytes[first] == '{') return from_json(bytes);
   return from_binary(std::as_bytes(std::span(bytes)));
