@@ -293,6 +293,12 @@ void visit_arrays(S& state, F&& f) {
 template <class T>
 inline constexpr bool kIsWord = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
+/// What visits fields and does nothing: to ask whether a type has a list above. Not a lambda, because
+/// Clang 14 crashes on one in a constraint.
+struct FieldIgnorer {
+  constexpr void operator()(const char*, auto&) const {}
+};
+
 /// Calls word(value) for each number of a field, innermost last; `field` is a number, a vector, an
 /// array, or a record with fields of its own.
 template <class F>
@@ -321,8 +327,7 @@ struct WordWalk {
   }
   template <class T>
   requires requires(T& t) {
-    visit_fields(
-        t, [](auto&&...) {}, static_cast<const std::remove_const_t<T>*>(nullptr));
+    visit_fields(t, FieldIgnorer{}, static_cast<const std::remove_const_t<T>*>(nullptr));
   }
   constexpr void walk(T& record) { visit(record, *this); }
 };

@@ -11,6 +11,9 @@ template <class... Handlers>
 struct Overloaded : Handlers... {
   using Handlers::operator()...;
 };
+// Implied by C++20, but Clang before 17 does not know.
+template <class... Handlers>
+Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
 std::string hex(std::uint64_t value) {
   char text[19];
