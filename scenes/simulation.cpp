@@ -70,12 +70,28 @@ solver::Error Simulation::set_workers(int workers) {
   return running_->visit([&](auto& built) { return built.world.set_workers(workers); });
 }
 
+solver::Error Simulation::set_lanes(int lanes) {
+  return running_->visit([&](auto& built) { return built.world.set_lanes(lanes); });
+}
+
 solver::Error Simulation::step(std::span<const SeatInput> inputs) {
   if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
   return running_->visit([&](auto& built) {
     if (!built.world.fault()) apply_controls(built, inputs);
     return built.world.step();
   });
+}
+
+solver::Error Simulation::step_traced(std::span<const SeatInput> inputs, solver::StepTrace& trace) {
+  if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
+  return running_->visit([&](auto& built) {
+    if (!built.world.fault()) apply_controls(built, inputs);
+    return built.world.step_traced(trace);
+  });
+}
+
+void Simulation::trace_state(solver::StepTrace& trace) const {
+  running_->visit([&](const auto& built) { built.world.trace_state(trace); });
 }
 
 std::uint64_t Simulation::digest() const {

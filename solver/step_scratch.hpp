@@ -103,9 +103,9 @@ struct StepScratch {
   ParticleScratch<D> particles;
   WorldState<D> before;                ///< Of worlds with particles, to undo a tick that faults.
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
-  StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>
-      contact_blocks;  ///< Only that of the chosen width is filled.
+      contact_blocks;          ///< Only that of the chosen width is filled.
+  StepTrace* trace = nullptr;  ///< Of World::step_traced, while it runs.
 };
 
 }  // namespace cycloid::solver
