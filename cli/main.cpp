@@ -30,6 +30,8 @@ static Exit parse_and_run(int argc, char** argv) {
   add_replay(app, action);
   add_verify(app, action);
   add_diff(app, action);
+  add_trace(app, action);
+  add_bisect(app, action);
   add_scene(app, action);
   add_experiments(app, action);
   add_version(app, action);
