@@ -26,6 +26,8 @@ void add_run(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
 void add_diff(CLI::App& app, Action& action);
+void add_trace(CLI::App& app, Action& action);
+void add_bisect(CLI::App& app, Action& action);
 void add_scene(CLI::App& app, Action& action);
 void add_experiments(CLI::App& app, Action& action);
 void add_version(CLI::App& app, Action& action);

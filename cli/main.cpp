@@ -41,6 +41,8 @@ static Exit parse_and_run(int argc, char** argv) {
   add_replay(app, action);
   add_verify(app, action);
   add_diff(app, action);
+  add_trace(app, action);
+  add_bisect(app, action);
   add_scene(app, action);
 #ifdef CYCLOID_EXPERIMENTS
   add_experiments(app, action);

@@ -82,6 +82,18 @@ solver::Error Simulation::step(std::span<const SeatInput> inputs) {
   });
 }
 
+solver::Error Simulation::step_traced(std::span<const SeatInput> inputs, solver::StepTrace& trace) {
+  if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
+  return running_->visit([&](auto& built) {
+    if (!built.world.fault()) apply_controls(built, inputs);
+    return built.world.step_traced(trace);
+  });
+}
+
+void Simulation::trace_state(solver::StepTrace& trace) const {
+  running_->visit([&](const auto& built) { built.world.trace_state(trace); });
+}
+
 std::uint64_t Simulation::digest() const {
   return running_->visit([](const auto& built) { return built.world.digest(); });
 }

@@ -17,6 +17,7 @@ namespace cycloid::solver {
 class Workers;
 template <int D>
 struct StepScratch;
+struct StepTrace;
 template <int D>
 struct JointFrame;
 template <int D>
@@ -88,6 +89,11 @@ class World {
   /// bounded range, nothing is committed: the world keeps the state of the tick before, enters the
   /// fault state (`fault()`), and this and every later step returns kFaulted.
   Error step();
+  /// `step`, and to `trace.phases` what each phase has left: up to where it failed, if it does.
+  /// Changes no bit of the step. See trace.hpp.
+  Error step_traced(StepTrace& trace);
+  /// Adds the state as it is now, as one phase kState.
+  void trace_state(StepTrace& trace) const;
 
   Result<BodyId> create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> shapes);
   /// Also removes the joints and pins of the body; its contacts end with the next step.
