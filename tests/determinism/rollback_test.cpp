@@ -17,7 +17,7 @@ Match wild_match(const Scene& scene, std::uint64_t ticks, std::uint32_t seed) {
     std::vector<SeatInput>& inputs = match.emplace_back();
     for (std::size_t seat = 0; seat < held.size(); ++seat) {
       if (left[seat] == 0) {
-        left[seat] = 8 + random() % 24;
+        left[seat] = 16 + random() % 32;
         for (std::int16_t& axis : held[seat].axes) axis = static_cast<std::int16_t>(random());
         held[seat].buttons = static_cast<std::uint16_t>(random());
       }
@@ -32,7 +32,7 @@ Match wild_match(const Scene& scene, std::uint64_t ticks, std::uint32_t seed) {
 
 TEST_P(Rollback, ConfirmedDigestsAreTheAuthoritysTickForTick) {
   const Scene scene = this->scene();
-  const Match match = wild_match(scene, 130, 11);
+  const Match match = wild_match(scene, 110, 11);
   expect_equal_in_rollback(scene, match, digests_of(scene, match), 3);
 }
 
