@@ -110,9 +110,18 @@ static bool has_dimension(ShapeKind kind, int spin) {
   }
 }
 
-static bool is_of_static_bodies(ShapeKind kind) {
-  return kind == ShapeKind::kHalfSpace || kind == ShapeKind::kChain || kind == ShapeKind::kMesh ||
-         kind == ShapeKind::kHeightField;
+bool is_of_static_bodies(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kSegment:
+    case ShapeKind::kChain:
+    case ShapeKind::kTriangle:
+    case ShapeKind::kMesh:
+    case ShapeKind::kHeightField:
+      return true;
+    default:
+      return false;
+  }
 }
 
 template <int D>

@@ -61,6 +61,13 @@ Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int
 template <int D>
 Error validate(const JointDef<D>& def);
 
+/// Whether a joint in use has settings that World's calls could have given it, and anchors that a
+/// body could have. @pre joint.kind != kFree.
+template <int D>
+bool is_reachable(const Joint<D>& joint);
+/// Kinds whose solid has no end, or only one side: those of static bodies.
+bool is_of_static_bodies(ShapeKind kind);
+
 /// A whole state that came from outside: every index, list, number and enumerator, so that stepping
 /// it reads and writes nothing out of bounds. kCorrupt with the name of the array.
 template <int D>
