@@ -61,7 +61,7 @@ void compare_inputs(const Match& a, const Match& b, std::uint64_t ticks, Finding
 void check_record(const Match& match, std::uint64_t ticks, Finding& finding) {
   const Course course = run_course(match, ticks, {});
   for (std::size_t tick = 1; tick < course.digests.size(); ++tick) {
-    const std::uint64_t recorded = match.log->log.ticks[tick - 1].digest;
+    const std::uint64_t recorded = match.log->log.ticks[static_cast<std::size_t>(tick - 1)].digest;
     if (recorded == course.digests[tick]) continue;
     finding.notes.push_back(match.name + " was recorded by another build, or is damaged: at tick " +
                             std::to_string(tick) + " it says " + hex16(recorded) +
@@ -102,7 +102,8 @@ Finding bisect_builds(const BisectOptions& options) {
   const std::uint64_t ticks = std::min(match.ticks(options.ticks), options.ticks);
   bisect_worlds(*here, *there, ticks, options.fields, finding);
   if (!finding.blame || !match.log || finding.blame->tick == 0) return finding;
-  const std::string recorded = hex16(match.log->log.ticks[finding.blame->tick - 1].digest);
+  const std::string recorded =
+      hex16(match.log->log.ticks[static_cast<std::size_t>(finding.blame->tick - 1)].digest);
   const std::string by = recorded == finding.blame->digest_a   ? finding.name_a
                          : recorded == finding.blame->digest_b ? finding.name_b
                                                                : "neither";

@@ -11,7 +11,8 @@ namespace cycloid::cli {
 std::vector<scenes::SeatInput> Match::inputs(std::uint64_t tick, int seats) const {
   std::vector<scenes::SeatInput> inputs;
   if (log) {
-    for (const protocol::SeatFrame& seat : log->log.ticks[static_cast<std::size_t>(tick - 1)].frame.seats)
+    for (const protocol::SeatFrame& seat :
+         log->log.ticks[static_cast<std::size_t>(tick - 1)].frame.seats)
       inputs.push_back(seat.input);
     return inputs;
   }

@@ -184,11 +184,11 @@ Error World<D>::step() {
   StepScratch<D>& scratch = *scratch_;
   const Tracer<D> traced{state_, scratch};
   traced(Phase::kForces);
-  find_pairs(context, state_, *workers_, scratch);
+  const bool paired = find_pairs(context, state_, *workers_, scratch);
   traced(Phase::kPairs);
-  collide_pairs(context, state_, *workers_, scratch);
+  if (paired) collide_pairs(context, state_, *workers_, scratch);
   traced(Phase::kCollide);
-  if (scratch.contacts.size() > state_.header.limits.contacts) {
+  if (!paired || scratch.contacts.size() > state_.header.limits.contacts) {
     state_.header.fault = {state_.header.tick + 1, {kNone, 0}, kFaultContacts};
     return {Code::kFaulted, "limits.contacts"};
   }
