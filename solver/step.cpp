@@ -1,5 +1,6 @@
 #include "solver/constraints/contact_rolling.hpp"
 #include "solver/events.hpp"
+#include "solver/floating_point_mode.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/validate.hpp"
 #include "solver/world.hpp"
@@ -144,6 +145,7 @@ static bool particles_moved(const StepContext<D>& context, StepScratch<D>& scrat
 template <int D>
 Error World<D>::step() {
   if (state_.header.fault.field != kFaultNone) return {Code::kFaulted, "step"};
+  if (!floating_point_mode_is_ieee()) return {Code::kInvalid, "floating_point_mode"};
   for (const Joint<D>& joint : state_.joints)
     if (joint.kind == JointKind::kUser &&
         find_rows_function<D>(scratch_->user_rows, joint.user_kind) == nullptr)

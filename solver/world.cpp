@@ -39,8 +39,10 @@ template <int D>
 World<D>::~World() = default;
 
 template <int D>
-Result<World<D>> World<D>::create(const WorldDef<D>& def) {
+Result<World<D>> World<D>::create(const WorldDef<D>& def, bool caller_rounds_as_written) {
   if (!floating_point_mode_is_ieee()) return Error{Code::kInvalid, "floating_point_mode"};
+  if (!caller_rounds_as_written || !solver_rounds_as_written())
+    return Error{Code::kInvalid, "floating_point_flags"};
   if (const Error error = validate(def); !error.ok()) return error;
   World world;
   world.state_.header.gravity = def.gravity;
@@ -54,6 +56,7 @@ Result<World<D>> World<D>::create(const WorldDef<D>& def) {
 template <int D>
 Error World<D>::set_workers(int workers) {
   if (workers < 1 || workers > 64) return {Code::kInvalid, "workers"};
+  if (!floating_point_mode_is_ieee()) return {Code::kInvalid, "floating_point_mode"};
   workers_ = std::make_unique<Workers>(workers);
   return {};
 }
