@@ -48,7 +48,9 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   prepare_joints(context, state, scratch);
   prepare_contacts<D, W>(context, state, workers, scratch);
 
-  const float start_s = static_cast<float>(state.header.tick) * context.tick_s;
+  // Signed, because 32-bit x86 turns large unsigned numbers into floats by x87 additions.
+  const auto tick = static_cast<std::int64_t>(state.header.tick);
+  const float start_s = static_cast<float>(tick) * context.tick_s;
   if (context.tuning.stabilisation != Stabilisation::kXpbd)
     evaluate<D, W>(context, state, start_s, workers, scratch);
   for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {

@@ -111,14 +111,15 @@ def forbidden_instructions(disassembly: str) -> tuple[list[str], int]:
 
 
 def names_by_member(listing: str, file: str) -> Iterator[tuple[str, str, bool]]:
-    """(object, name, whether it is defined there) of every line of nm -A."""
+    """(object, name, whether it defines the name for others) of every line of nm -A."""
     for line in listing.splitlines():
         match = re.match(r"(.*?):\s*(?:[0-9a-f]{6,})?\s*([A-Za-z?-]) (.*)$", line)
         if match is None:
             continue
         # "archive.a:member.o: " of GNU, "archive.a: member.o: " of LLVM, "object.o: " of both.
         member = Path(match[1].rstrip(":").split(":")[-1].strip() or file).name
-        yield member, match[3], match[2] not in "Uwv"
+        if match[2] in "Uwv" or match[2].isupper() or match[2] == "u":
+            yield member, match[3], match[2] not in "Uwv"
 
 
 def foreign_imports(listings: Iterable[tuple[str, str]], imports: Imports) -> list[str]:
