@@ -13,8 +13,8 @@ std::string reason_of(const solver::Error& error) {
   }
   const std::string_view field = error.field;
   if (field == "floating_point_mode")
-    return "is not IEEE: this thread rounds other than to nearest, or flushes subnormal numbers to "
-           "zero; a library that was linked with -ffast-math does that when it is loaded";
+    return "is not IEEE: this thread rounds other than to nearest, or flushes subnormal numbers; a "
+           "library that was linked with -ffast-math does that when it is loaded";
   if (field == "floating_point_flags")
     return "fuse or reorder operations: build with -ffp-contract=off and without -ffast-math";
   if (field == "points")

@@ -39,7 +39,7 @@ namespace cycloid::solver {
 
 /// Hides a value from the optimiser, so that what is done with it is done by the processor, now.
 inline float opaque(float value) {
-  asm volatile("" : "+m"(value));
+  asm("" : "+m"(value));
   return value;
 }
 

@@ -1,7 +1,5 @@
 #include "solver/floating_point_mode.hpp"
 
-#include "solver/arithmetic.hpp"
-
 namespace cycloid::solver {
 
 bool floating_point_mode_is_ieee() {
@@ -16,8 +14,11 @@ bool floating_point_mode_is_ieee() {
   return not_up && not_down && not_to_zero && keeps_subnormals && reads_subnormals;
 }
 
-bool solver_rounds_as_written() {
-  return rounds_as_written();
+Error check_arithmetic(bool caller_rounds_as_written) {
+  if (!floating_point_mode_is_ieee()) return {Code::kInvalid, "floating_point_mode"};
+  if (!caller_rounds_as_written || !rounds_as_written())
+    return {Code::kInvalid, "floating_point_flags"};
+  return {};
 }
 
 }  // namespace cycloid::solver

@@ -40,9 +40,7 @@ World<D>::~World() = default;
 
 template <int D>
 Result<World<D>> World<D>::create(const WorldDef<D>& def, bool caller_rounds_as_written) {
-  if (!floating_point_mode_is_ieee()) return Error{Code::kInvalid, "floating_point_mode"};
-  if (!caller_rounds_as_written || !solver_rounds_as_written())
-    return Error{Code::kInvalid, "floating_point_flags"};
+  if (const Error error = check_arithmetic(caller_rounds_as_written); !error.ok()) return error;
   if (const Error error = validate(def); !error.ok()) return error;
   World world;
   world.state_.header.gravity = def.gravity;
