@@ -1,5 +1,6 @@
 #include "solver/constraints/contact_rolling.hpp"
 #include "solver/events.hpp"
+#include "solver/floating_point_mode.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/tracing/tracer.hpp"
 #include "solver/validate.hpp"
@@ -55,7 +56,9 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
 template <int D, int W>
 static void solve_substeps(const StepContext<D>& context, const WorldState<D>& state,
                            Tracer<D> traced, Workers& workers, StepScratch<D>& scratch) {
-  const float start_s = static_cast<float>(state.header.tick) * context.tick_s;
+  // Signed, because 32-bit x86 turns large unsigned numbers into floats by x87 additions.
+  const auto tick = static_cast<std::int64_t>(state.header.tick);
+  const float start_s = static_cast<float>(tick) * context.tick_s;
   if (context.tuning.stabilisation != Stabilisation::kXpbd) {
     evaluate<D, W>(context, state, start_s, workers, scratch);
     traced(Phase::kEvaluate);
@@ -175,6 +178,7 @@ static bool particles_moved(const StepContext<D>& context, StepScratch<D>& scrat
 template <int D>
 Error World<D>::step() {
   if (state_.header.fault.field != kFaultNone) return {Code::kFaulted, "step"};
+  if (!floating_point_mode_is_ieee()) return {Code::kInvalid, "floating_point_mode"};
   for (const Joint<D>& joint : state_.joints)
     if (joint.kind == JointKind::kUser &&
         find_rows_function<D>(scratch_->user_rows, joint.user_kind) == nullptr)
