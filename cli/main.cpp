@@ -40,6 +40,7 @@ static Exit parse_and_run(int argc, char** argv) {
   add_run(app, action);
   add_replay(app, action);
   add_verify(app, action);
+  add_golden(app, action);
   add_diff(app, action);
   add_trace(app, action);
   add_bisect(app, action);
