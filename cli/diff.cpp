@@ -30,10 +30,14 @@ struct Side {
   std::uint64_t ticks(std::uint64_t otherwise) const {
     return log ? log->log.ticks.size() : otherwise;
   }
+  /// @pre it has a log, and 1 <= tick <= its ticks.
+  const protocol::LogTick& recorded(std::uint64_t tick) const {
+    return log->log.ticks[static_cast<std::size_t>(tick - 1)];
+  }
   std::vector<scenes::SeatInput> inputs(std::uint64_t tick) const {
     std::vector<scenes::SeatInput> inputs;
     for (int seat = 0; seat < simulation.seats(); ++seat) {
-      inputs.push_back(log ? log->log.ticks[tick - 1].frame.seats[std::size_t(seat)].input
+      inputs.push_back(log ? recorded(tick).frame.seats[std::size_t(seat)].input
                            : scenes::scripted_input(scene, seat, tick));
     }
     return inputs;
@@ -117,8 +121,8 @@ bool step_both(Side& a, Side& b, std::uint64_t tick, Found& found) {
 /// Where two logs recorded unlike digests for what steps alike here, one was made by another world.
 bool same_record(const Side& a, const Side& b, std::uint64_t tick, Found& found) {
   if (!a.log || !b.log) return true;
-  const std::uint64_t digest_a = a.log->log.ticks[tick - 1].digest;
-  const std::uint64_t digest_b = b.log->log.ticks[tick - 1].digest;
+  const std::uint64_t digest_a = a.recorded(tick).digest;
+  const std::uint64_t digest_b = b.recorded(tick).digest;
   if (digest_a == digest_b) return true;
   found.other = "recorded digests differ at tick " + std::to_string(tick) + ": " + hex16(digest_a) +
                 " against " + hex16(digest_b) + "; replayed here both are " +
