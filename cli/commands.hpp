@@ -25,6 +25,7 @@ void add_lanes_option(CLI::App* command, int& lanes);
 void add_run(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
+void add_golden(CLI::App& app, Action& action);
 void add_diff(CLI::App& app, Action& action);
 void add_scene(CLI::App& app, Action& action);
 void add_experiments(CLI::App& app, Action& action);

@@ -35,6 +35,7 @@ static Exit parse_and_run(int argc, char** argv) {
   add_run(app, action);
   add_replay(app, action);
   add_verify(app, action);
+  add_golden(app, action);
   add_diff(app, action);
   add_scene(app, action);
 #ifdef CYCLOID_EXPERIMENTS
