@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <filesystem>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -7,6 +6,7 @@
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/files.hpp"
 #include "cli/log_file.hpp"
 #include "cli/output.hpp"
 
@@ -27,6 +27,10 @@ struct Side {
   scenes::Scene scene;
   scenes::Simulation simulation;
 
+  /// @pre There is a log, and 1 <= tick <= ticks().
+  const protocol::LogTick& recorded(std::uint64_t tick) const {
+    return log->log.ticks[static_cast<std::size_t>(tick - 1)];
+  }
   std::uint64_t ticks(std::uint64_t otherwise) const {
     return log ? log->log.ticks.size() : otherwise;
   }
@@ -46,9 +50,8 @@ struct Side {
 
 /// A file is a log when it says so by its name, or when it reads as one.
 bool is_log(const std::string& what) {
-  std::error_code error;
-  if (std::filesystem::path(what).extension() == ".cylog") return true;
-  if (!std::filesystem::is_regular_file(what, error)) return false;
+  if (what.ends_with(".cylog")) return true;
+  if (!kind_of(what).is_file) return false;
   return protocol::read_log(read_file(what)).state != protocol::LogState::kCorrupt;
 }
 

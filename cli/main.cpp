@@ -3,6 +3,11 @@
 #include <exception>
 #include <iostream>
 #include <string_view>
+#if defined(_WIN32)
+#include <fcntl.h>
+#include <io.h>
+#include <stdio.h>
+#endif
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
@@ -64,6 +69,9 @@ static Exit report_failure(Exit exit, const std::string& what, bool json) {
 
 int main(int argc, char** argv) {
   using namespace cycloid::cli;
+#if defined(_WIN32)  // The same bytes on stdout everywhere: no \r\n, and binary scenes whole.
+  _setmode(_fileno(stdout), _O_BINARY);
+#endif
   const bool json =
       std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
   Exit exit = kExitGood;

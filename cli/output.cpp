@@ -1,11 +1,12 @@
 #include "cli/output.hpp"
 
 #include <cstdio>
-#include <filesystem>
 #include <fstream>
 #include <iostream>
 #include <iterator>
 #include <utility>
+
+#include "cli/files.hpp"
 
 namespace cycloid::cli {
 
@@ -22,8 +23,7 @@ void print_json(Json object, Exit exit) {
 }
 
 std::vector<std::byte> read_file(const std::string& file) {
-  std::error_code error;
-  if (std::filesystem::is_directory(file, error)) throw Failure(kExitIo, file + ": is a directory");
+  if (kind_of(file).is_folder) throw Failure(kExitIo, file + ": is a directory");
   std::ifstream stream(file, std::ios::binary);
   if (!stream) throw Failure(kExitIo, file + ": cannot be opened");
   const std::string text((std::istreambuf_iterator<char>(stream)),
@@ -43,8 +43,7 @@ void write_file(const std::string& file, const std::string& bytes) {
 scenes::Scene load_scene(const std::string& what) {
   scenes::Loaded loaded = scenes::load(what);
   if (loaded.scene) return std::move(*loaded.scene);
-  std::error_code error;
-  const bool is_file = std::filesystem::exists(what, error);
+  const bool is_file = kind_of(what).exists;
   if (is_file) read_file(what);  // Says so where it cannot be read.
   throw Failure(is_file ? kExitCorrupt : kExitUsage, mistakes_text(what, loaded.mistakes));
 }

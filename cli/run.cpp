@@ -36,7 +36,7 @@ protocol::InputFrame scripted_frame(const scenes::Scene& scene, int seats, std::
 /// A row per body and tick, for plots. Positions in m, rotations as quaternions.
 class PoseTable {
  public:
-  explicit PoseTable(const std::string& file) : file_(file), stream_(file) {
+  explicit PoseTable(const std::string& file) : file_(file), stream_(file, std::ios::binary) {
     stream_ << "tick,body,x,y,z,qx,qy,qz,qw\n";
   }
   void add(const scenes::Simulation& simulation) {

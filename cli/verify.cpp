@@ -1,10 +1,10 @@
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <memory>
 #include <vector>
 
 #include "cli/commands.hpp"
+#include "cli/files.hpp"
 #include "cli/log_file.hpp"
 #include "cli/report.hpp"
 #include "cli/side_by_side.hpp"
@@ -23,21 +23,13 @@ struct VerifyOptions {
 
 /// The files named, and of each folder the *.cylog anywhere in it, by name.
 std::vector<std::string> logs_of(const std::vector<std::string>& paths) {
-  namespace fs = std::filesystem;
   std::vector<std::string> files;
   for (const std::string& path : paths) {
-    std::error_code error;
-    if (!fs::is_directory(path, error)) {
+    if (!kind_of(path).is_folder) {
       files.push_back(path);
       continue;
     }
-    std::vector<std::string> found;
-    for (const auto& entry : fs::recursive_directory_iterator(path)) {
-      if (entry.is_regular_file() && entry.path().extension() == ".cylog") {
-        found.push_back(entry.path().string());
-      }
-    }
-    std::sort(found.begin(), found.end());
+    const std::vector<std::string> found = files_below(path, ".cylog");
     files.insert(files.end(), found.begin(), found.end());
   }
   if (files.empty()) throw Failure(kExitIo, paths.front() + ": no log (*.cylog) found");

@@ -293,8 +293,8 @@ void visit_arrays(S& state, F&& f) {
 template <class T>
 inline constexpr bool kIsWord = std::is_arithmetic_v<T> || std::is_enum_v<T>;
 
-/// What visits fields and does nothing: to ask whether a type has a list above. Not a lambda, because
-/// Clang 14 crashes on one in a constraint.
+/// What visits fields and does nothing: to ask whether a type has a list above. Not a lambda,
+/// because Clang 14 crashes on one in a constraint.
 struct FieldIgnorer {
   constexpr void operator()(const char*, auto&) const {}
 };

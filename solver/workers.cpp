@@ -1,46 +1,97 @@
 #include "solver/workers.hpp"
 
+#if defined(__wasm__) && !defined(_REENTRANT)
+
 namespace cycloid::solver {
 
-Workers::Workers(int count) {
-  for (int i = 1; i < count; ++i) threads_.emplace_back([this] { thread_main(); });
+/// WebAssembly without threads: nothing to hold.
+struct Workers::Threads {};
+
+Workers::Workers(int count) : count_(count) {}
+Workers::~Workers() = default;
+
+void Workers::dispatch(int size, int grain, void* context, Call call) {
+  for (int begin = 0; begin < size; begin += grain)
+    call(context, Range{begin, begin + grain < size ? begin + grain : size});
 }
 
-Workers::~Workers() {
-  stop_.store(true);
-  generation_.fetch_add(1);
-  generation_.notify_all();
-  for (std::thread& thread : threads_) thread.join();
+}  // namespace cycloid::solver
+
+#else
+
+#include <atomic>
+#include <cstdint>
+#include <thread>
+#include <vector>
+
+namespace cycloid::solver {
+
+/// The threads beside the calling one, and the job that all of them share.
+struct Workers::Threads {
+  explicit Threads(int count);
+  ~Threads();
+  void run_chunks();
+  void thread_main();
+
+  std::vector<std::thread> threads;
+  std::atomic<std::uint32_t> generation{0};
+  std::atomic<int> next{0};
+  std::atomic<int> busy{0};
+  std::atomic<bool> stop{false};
+  int size = 0;
+  int grain = 1;
+  void* context = nullptr;
+  Call call = nullptr;
+};
+
+Workers::Workers(int count) : count_(count) {
+  if (count > 1) threads_ = std::make_unique<Threads>(count - 1);
+}
+
+Workers::~Workers() = default;
+
+Workers::Threads::Threads(int count) {
+  for (int i = 0; i < count; ++i) threads.emplace_back([this] { thread_main(); });
+}
+
+Workers::Threads::~Threads() {
+  stop.store(true);
+  generation.fetch_add(1);
+  generation.notify_all();
+  for (std::thread& thread : threads) thread.join();
 }
 
 void Workers::dispatch(int size, int grain, void* context, Call call) {
-  size_ = size;
-  grain_ = grain;
-  context_ = context;
-  call_ = call;
-  next_.store(0);
-  busy_.store(static_cast<int>(threads_.size()));
-  generation_.fetch_add(1);
-  generation_.notify_all();
-  run_chunks();
+  Threads& pool = *threads_;
+  pool.size = size;
+  pool.grain = grain;
+  pool.context = context;
+  pool.call = call;
+  pool.next.store(0);
+  pool.busy.store(static_cast<int>(pool.threads.size()));
+  pool.generation.fetch_add(1);
+  pool.generation.notify_all();
+  pool.run_chunks();
   // The job's fields may only be written again when every thread has left it.
-  for (int busy = busy_.load(); busy != 0; busy = busy_.load()) busy_.wait(busy);
+  for (int busy = pool.busy.load(); busy != 0; busy = pool.busy.load()) pool.busy.wait(busy);
 }
 
-void Workers::run_chunks() {
-  for (int begin = next_.fetch_add(grain_); begin < size_; begin = next_.fetch_add(grain_))
-    call_(context_, Range{begin, begin + grain_ < size_ ? begin + grain_ : size_});
+void Workers::Threads::run_chunks() {
+  for (int begin = next.fetch_add(grain); begin < size; begin = next.fetch_add(grain))
+    call(context, Range{begin, begin + grain < size ? begin + grain : size});
 }
 
-void Workers::thread_main() {
+void Workers::Threads::thread_main() {
   // Generation 0 is the constructor's: a thread that starts late still sees the first job.
   for (std::uint32_t seen = 0;;) {
-    generation_.wait(seen);
-    seen = generation_.load();
-    if (stop_.load()) return;
+    generation.wait(seen);
+    seen = generation.load();
+    if (stop.load()) return;
     run_chunks();
-    if (busy_.fetch_sub(1) == 1) busy_.notify_all();
+    if (busy.fetch_sub(1) == 1) busy.notify_all();
   }
 }
 
 }  // namespace cycloid::solver
+
+#endif

@@ -1,9 +1,6 @@
 #pragma once
 
-#include <atomic>
-#include <cstdint>
-#include <thread>
-#include <vector>
+#include <memory>
 
 namespace cycloid::solver {
 
@@ -17,6 +14,7 @@ struct Range {
 ///
 /// The split into ranges of `grain` depends on the work alone, never on the number of threads, and
 /// every range writes what no other reads or writes; so which thread runs a range cannot be seen.
+/// On a target without threads the calling thread runs them all.
 class Workers {
  public:
   /// @pre 1 <= count <= 64; the calling thread is one of them.
@@ -25,12 +23,12 @@ class Workers {
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  int count() const { return static_cast<int>(threads_.size()) + 1; }
+  int count() const { return count_; }
 
   /// Calls run(Range) for consecutive ranges that cover [0, size); returns when all are done.
   template <class Run>
   void parallel_for(int size, int grain, Run&& run) {
-    if (size <= grain || threads_.empty()) {
+    if (size <= grain || count_ == 1) {
       for (int begin = 0; begin < size; begin += grain)
         run(Range{begin, begin + grain < size ? begin + grain : size});
       return;
@@ -42,18 +40,10 @@ class Workers {
  private:
   using Call = void (*)(void*, Range);
   void dispatch(int size, int grain, void* context, Call call);
-  void run_chunks();
-  void thread_main();
 
-  std::vector<std::thread> threads_;
-  std::atomic<std::uint32_t> generation_{0};
-  std::atomic<int> next_{0};
-  std::atomic<int> busy_{0};
-  std::atomic<bool> stop_{false};
-  int size_ = 0;
-  int grain_ = 1;
-  void* context_ = nullptr;
-  Call call_ = nullptr;
+  struct Threads;
+  int count_;
+  std::unique_ptr<Threads> threads_;
 };
 
 }  // namespace cycloid::solver

@@ -1,0 +1,84 @@
+#include "cli/files.hpp"
+
+#include <algorithm>
+#include <version>
+#if defined(__cpp_lib_filesystem)
+#include <filesystem>
+#else
+#include <dirent.h>
+#include <sys/stat.h>
+
+#include <cerrno>
+#include <memory>
+#include <system_error>
+#endif
+
+namespace cycloid::cli {
+
+#if defined(__cpp_lib_filesystem)
+
+PathKind kind_of(const std::string& path) {
+  std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(path, error);
+  return {std::filesystem::exists(status), std::filesystem::is_directory(status),
+          std::filesystem::is_regular_file(status)};
+}
+
+static void find_below(const std::string& folder, const std::string& suffix,
+                       std::vector<std::string>& found) {
+  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
+    const std::string name = entry.path().generic_string();
+    if (name.ends_with(suffix) && entry.is_regular_file()) found.push_back(name);
+  }
+}
+
+std::string path_from(const std::string& file, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+  const std::string name = whole.lexically_relative(folder.lexically_normal()).generic_string();
+  return name.empty() ? whole.generic_string() : name;
+}
+
+std::string path_to(const std::string& file, const std::string& name) {
+  return (std::filesystem::path(file).parent_path() / name).string();
+}
+
+#else  // The C++ library of wasi has no <filesystem>; POSIX is there.
+
+PathKind kind_of(const std::string& path) {
+  struct stat status {};
+  if (stat(path.c_str(), &status) != 0) return {};
+  return {true, S_ISDIR(status.st_mode), S_ISREG(status.st_mode)};
+}
+
+static void find_below(const std::string& folder, const std::string& suffix,
+                       std::vector<std::string>& found) {
+  const std::unique_ptr<DIR, int (*)(DIR*)> entries(opendir(folder.c_str()), closedir);
+  if (!entries) throw std::system_error(errno, std::generic_category(), folder);
+  while (const dirent* entry = readdir(entries.get())) {
+    const std::string name = entry->d_name;
+    if (name == "." || name == "..") continue;
+    const std::string path = folder + (folder.ends_with('/') ? "" : "/") + name;
+    if (entry->d_type == DT_DIR) find_below(path, suffix, found);
+    if (name.ends_with(suffix) && kind_of(path).is_file) found.push_back(path);
+  }
+}
+
+std::string path_from(const std::string&, const std::string& path) {
+  return path;
+}
+
+std::string path_to(const std::string& file, const std::string& name) {
+  return name.starts_with('/') ? name : file.substr(0, file.rfind('/') + 1) + name;
+}
+
+#endif
+
+std::vector<std::string> files_below(const std::string& folder, const std::string& suffix) {
+  std::vector<std::string> found;
+  find_below(folder, suffix, found);
+  std::sort(found.begin(), found.end());
+  return found;
+}
+
+}  // namespace cycloid::cli
