@@ -64,7 +64,7 @@ def compare(row: Row, check: Check, matrix: Matrix, place: Place) -> int:
               if not check.scenes or scene in check.scenes}
     named = [word for scene in check.scenes for word in ("--scene", scene)]
     ran = run(row, place, ["golden", "check", matrix.goldens, "--ticks", str(check.ticks),
-                           *_setting(check), *named, "--json"])
+                           *_setting(check), *named, "--jobs", str(place.jobs), "--json"])
     try:
         verdicts = {verdict["scene"]: verdict for verdict in json.loads(ran.out)["scenes"]}
     except (ValueError, KeyError, TypeError) as error:
