@@ -2,7 +2,7 @@
 # What a build needs from the distribution. Sourced by ./dev.
 
 packages=(
-  g++ cmake ninja-build ccache git          # the tools
+  g++ cmake ninja-build ccache git python3  # the tools
   libeigen3-dev libxxhash-dev               # solver: small matrices; hashing
   nlohmann-json3-dev libflatbuffers-dev     # scenes and protocol: JSON; binary forms
   flatbuffers-compiler

@@ -2,21 +2,19 @@
 
 #include <algorithm>
 #include <chrono>
-#include <filesystem>
 #include <iostream>
 #include <limits>
 #include <memory>
 #include <set>
 
 #include "cli/commands.hpp"
+#include "cli/files.hpp"
 #include "cli/log_file.hpp"
 #include "cli/report.hpp"
 #include "cli/side_by_side.hpp"
 
 namespace cycloid::cli {
 namespace {
-
-namespace fs = std::filesystem;
 
 struct PlayOptions {
   int workers = 1;
@@ -61,14 +59,8 @@ std::vector<std::uint64_t> listed_ticks(const MakeOptions& options) {
 /// How a golden file names a scene that the command line names: the file may move with its folder,
 /// and nothing depends on the folder that the program is called in.
 std::string name_in(const std::string& golden, const std::string& scene) {
-  std::error_code error;
-  if (!fs::exists(scene, error)) return scene;
-  const fs::path folder = fs::absolute(golden.empty() ? "x" : golden).parent_path();
-  const std::string name = fs::absolute(scene)
-                               .lexically_normal()
-                               .lexically_relative(folder.lexically_normal())
-                               .generic_string();
-  if (name.empty()) return fs::absolute(scene).generic_string();
+  if (!kind_of(scene).exists) return scene;
+  const std::string name = path_from(golden.empty() ? "x" : golden, scene);
   return scenes::is_path(name) ? name : "./" + name;
 }
 
@@ -144,7 +136,7 @@ scenes::GoldenFile load_golden(const std::string& file, Verdict& subject) {
 scenes::Scene scene_of(const scenes::GoldenScene& golden, const std::string& file) {
   std::string what = golden.name;
   if (scenes::is_path(golden.name)) {
-    what = (fs::path(file).parent_path() / golden.name).string();
+    what = path_to(file, golden.name);
     read_file(what);
   } else if (!scenes::find(golden.name).scene) {
     throw Failure(kExitIncompatible, "this program has no scene of this name");

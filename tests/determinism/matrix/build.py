@@ -81,7 +81,6 @@ def configure_command(row: Row, place: Place) -> list[str]:
     command = ["cmake", "--fresh", "-S", str(place.root), "-B", str(place.folder(row)),
                "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None",
                f"-DCMAKE_CXX_COMPILER={row.compiler}",
-               f"-DCMAKE_CXX_STANDARD_LIBRARIES={place.text(row, row.libraries)}",
                "-DCYCLOID_NETWORK=OFF", "-DCYCLOID_TESTS=OFF", "-DCYCLOID_EXPERIMENTS=OFF"]
     if shutil.which("ccache"):
         command.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")

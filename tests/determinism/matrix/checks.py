@@ -5,39 +5,17 @@ import dataclasses
 import hashlib
 import json
 import pathlib
-import re
 import shutil
 
-from build import Place, Ran, RowFailed, build, run
+from build import Place, RowFailed, build, run
 from rows import Check, Matrix, Row
 
 
-def golden_scenes(file: pathlib.Path) -> list[str]:
-    """The scenes that the table of goldens names, in its order."""
-    scenes: dict[str, None] = {}
-    for line in file.read_text(encoding="utf-8").splitlines():
-        words = line.split()
-        if words and not words[0].startswith("#"):
-            scenes[words[0]] = None
-    return list(scenes)
-
-
-def _table(check: Check, matrix: Matrix, place: Place) -> str:
-    """The table for the check, relative to the root: the whole one, or a copy with fewer scenes."""
-    if not check.scenes:
-        return matrix.goldens
-    whole = place.root / matrix.goldens
-    unknown = set(check.scenes) - set(golden_scenes(whole))
-    if unknown:
-        raise RowFailed(f"the table of goldens has no scene {', '.join(sorted(unknown))}")
-    lines = [line for line in whole.read_text(encoding="utf-8").splitlines()
-             if line.startswith("#") or line.split()[:1] and line.split()[0] in check.scenes]
-    text = "\n".join(lines) + "\n"
-    name = hashlib.sha256(text.encode()).hexdigest()[:12]
-    part = place.builds / "tables" / f"{name}.txt"
-    part.parent.mkdir(parents=True, exist_ok=True)
-    part.write_text(text, encoding="utf-8")
-    return str(part.relative_to(place.root))
+def golden_ticks(file: pathlib.Path) -> dict[str, int]:
+    """The scenes of the table of goldens, with the last tick of each."""
+    lines = file.read_text(encoding="utf-8").splitlines()
+    words = [line.split() for line in lines]
+    return {line[1]: int(line[2]) for line in words if len(line) > 2 and line[0] == "scene"}
 
 
 def _setting(check: Check) -> list[str]:
@@ -69,12 +47,6 @@ def _blame(row: Row, matrix: Matrix, place: Place, scene: str, check: Check) -> 
     return f"{scene} is the same as in {reference.name}, which may be wrong itself"
 
 
-def _scene_in(text: str, scenes: list[str]) -> str | None:
-    """The scene that a complaint names first, if it names one."""
-    words = re.findall(r"[\w.-]+", text)
-    return next((word.rstrip(".-") for word in words if word.rstrip(".-") in scenes), None)
-
-
 class Mismatch(RowFailed):
     """The goldens are not met."""
 
@@ -85,26 +57,29 @@ class Mismatch(RowFailed):
 
 
 def compare(row: Row, check: Check, matrix: Matrix, place: Place) -> int:
-    """Compares the row's program with the goldens; how many digests were. Mismatch where one
-    differs."""
-    ran = run(row, place, ["golden", "check", _table(check, matrix, place), "--ticks",
-                           str(check.ticks), *_setting(check), "--json"])
-    if ran.exit == 0:
-        return _digests_in(ran)
-    scene = _scene_in(ran.out + ran.err, golden_scenes(place.root / matrix.goldens))
-    raise Mismatch(f"{check.text()}: {ran.said()} (exit {ran.exit})", check, scene)
-
-
-def _digests_in(ran: Ran) -> int:
-    """How many digests the program says that it compared. A program that compared none proves
-    nothing."""
+    """Compares the row's program with the goldens; how many ticks were. Mismatch where one
+    differs, or where the program does not say that it compared every tick of every scene."""
+    wanted = {scene: min(ticks, check.ticks)
+              for scene, ticks in golden_ticks(place.root / matrix.goldens).items()
+              if not check.scenes or scene in check.scenes}
+    named = [word for scene in check.scenes for word in ("--scene", scene)]
+    ran = run(row, place, ["golden", "check", matrix.goldens, "--ticks", str(check.ticks),
+                           *_setting(check), *named, "--jobs", str(place.jobs), "--json"])
     try:
-        digests = int(json.loads(ran.out)["digests"])
+        verdicts = {verdict["scene"]: verdict for verdict in json.loads(ran.out)["scenes"]}
     except (ValueError, KeyError, TypeError) as error:
-        raise RowFailed(f"golden check says no number of digests: {ran.said()}") from error
-    if digests <= 0:
-        raise RowFailed("golden check compared no digest")
-    return digests
+        raise Mismatch(f"{check.text()}: {ran.said()} (exit {ran.exit})", check, None) from error
+    for scene, verdict in verdicts.items():
+        if verdict["exit"] != 0:
+            raise Mismatch(f"{check.text()}: {scene}: {verdict['verdict']}", check, scene)
+    ticks = {scene: verdict["ticks"] for scene, verdict in verdicts.items()}
+    if ran.exit != 0:
+        raise Mismatch(f"{check.text()}: {ran.said()} (exit {ran.exit})", check, None)
+    if ticks != wanted or not wanted:
+        missing = sorted(scene for scene in wanted if ticks.get(scene) != wanted[scene])
+        raise Mismatch(f"{check.text()}: not every tick was compared of {', '.join(missing)}",
+                       check, None)
+    return sum(ticks.values())
 
 
 def compare_all(row: Row, matrix: Matrix, place: Place) -> int:

@@ -38,7 +38,6 @@ class Row:
     flags: str
     checks: tuple[Check, ...]
     link_flags: str = ""
-    libraries: str = ""
     toolchain: str = ""  # A file of cmake/toolchains; none: the compiler's own target.
     cmake: tuple[str, ...] = ()
     program: str = "cycloid"
