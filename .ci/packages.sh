@@ -8,6 +8,7 @@ packages=(
   flatbuffers-compiler
   libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
   libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
+  librapidcheck-dev                         # tests of properties: random cases that shrink
   gnuplot-nox                               # figures of the experiments
 )
 

@@ -108,9 +108,8 @@ std::multimap<std::uint64_t, Letter> post(const Match& match, std::uint32_t seed
 
 }  // namespace
 
-void expect_equal_in_rollback(const Scene& scene, const Match& match,
-                              const std::vector<std::uint64_t>& right, std::uint32_t seed) {
-  RollbackClient client(scene);
+void expect_equal_in_rollback(const Match& match, const std::vector<std::uint64_t>& right,
+                              std::uint32_t seed, RollbackClient& client) {
   const auto letters = post(match, seed);
   std::size_t compared = 0;
   const auto compare = [&] {
@@ -131,9 +130,6 @@ void expect_equal_in_rollback(const Scene& scene, const Match& match,
   client.mend();
   compare();
   EXPECT_EQ(compared, match.size() + 1);
-  // Else it would have guessed right all the time and shown nothing.
-  EXPECT_EQ(client.longest_rollback, kRollbackTicks);
-  EXPECT_GT(client.wrong_digests, 0u);
 }
 
 }  // namespace cycloid::history

@@ -55,7 +55,7 @@ class RollbackClient {
 
 /// Plays a match in rollback with inputs late by up to kRollbackTicks, at random by `seed`, and
 /// holds every confirmed digest to `right`.
-void expect_equal_in_rollback(const Scene& scene, const Match& match,
-                              const std::vector<std::uint64_t>& right, std::uint32_t seed);
+void expect_equal_in_rollback(const Match& match, const std::vector<std::uint64_t>& right,
+                              std::uint32_t seed, RollbackClient& client);
 
 }  // namespace cycloid::history

@@ -33,7 +33,11 @@ Match wild_match(const Scene& scene, std::uint64_t ticks, std::uint32_t seed) {
 TEST_P(Rollback, ConfirmedDigestsAreTheAuthoritysTickForTick) {
   const Scene scene = this->scene();
   const Match match = wild_match(scene, 110, 11);
-  expect_equal_in_rollback(scene, match, digests_of(scene, match), 3);
+  RollbackClient client(scene);
+  expect_equal_in_rollback(match, digests_of(scene, match), 3, client);
+  // Else it would have guessed right all the time and shown nothing.
+  EXPECT_EQ(client.longest_rollback, kRollbackTicks);
+  EXPECT_GT(client.wrong_digests, 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Rollback, testing::ValuesIn(scene_names()), scene_test_name);
