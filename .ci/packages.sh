@@ -8,6 +8,7 @@ packages=(
   flatbuffers-compiler
   libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
   libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
+  python3                                   # scripts that measure and that read objects
   gnuplot-nox                               # figures of the experiments
 )
 
