@@ -7,6 +7,7 @@ import os
 import platform
 import shlex
 import subprocess
+import tempfile
 import unittest
 
 CXX = os.environ.get("CXX", "g++")
@@ -57,6 +58,17 @@ class Refusals(unittest.TestCase):
     def test_every_public_header_with_arithmetic_refuses(self) -> None:
         for header in HEADERS:
             self.refused("-ffast-math", remedy="-fno-fast-math", text=f'#include "{header}"\n')
+
+    def test_a_program_with_free_arithmetic_does_not_link(self) -> None:
+        text = USER + "int main() { return cycloid::solver::rounds_as_written(); }\n"
+        with tempfile.TemporaryDirectory() as folder:
+            for free, status in (([], 0), (["-DCYCLOID_FREE_ARITHMETIC"], 1)):
+                command = [CXX, "-std=c++20", *free, "-I", SOURCE, "-x", "c++", "-",
+                           "-o", f"{folder}/a"]
+                done = subprocess.run(command, input=text, capture_output=True, text=True,
+                                      check=False)
+                self.assertEqual(done.returncode != 0, status != 0, done.stderr)
+                self.assertEqual("kMeasuresFreeArithmetic" in done.stderr, status != 0)
 
     @unittest.skipUnless(X86, "only x86 has an x87")
     def test_x87(self) -> None:
