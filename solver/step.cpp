@@ -151,9 +151,9 @@ Error World<D>::step() {
   const StepContext<D> context =
       make_step_context(state_.header.tick_s, state_.header.gravity, state_.header.tuning);
   StepScratch<D>& scratch = *scratch_;
-  find_pairs(context, state_, *workers_, scratch);
-  collide_pairs(context, state_, *workers_, scratch);
-  if (scratch.contacts.size() > state_.header.limits.contacts) {
+  const bool paired = find_pairs(context, state_, *workers_, scratch);
+  if (paired) collide_pairs(context, state_, *workers_, scratch);
+  if (!paired || scratch.contacts.size() > state_.header.limits.contacts) {
     state_.header.fault = {state_.header.tick + 1, {kNone, 0}, kFaultContacts};
     return {Code::kFaulted, "limits.contacts"};
   }

@@ -17,6 +17,9 @@ inline constexpr float kMassMin = 1.0e-9f;     ///< kg
 inline constexpr float kSizeMin = 1.0e-4f;     ///< m: radii and edges
 inline constexpr float kSizeMax = 1.0e6f;      ///< m
 
+/// Sweeps of a tick, of all substeps together: with the limits it bounds what a tick can take.
+inline constexpr std::uint32_t kSweepsMax = 8192;
+
 inline constexpr float kSteeringMax = 1.6f;  ///< rad
 
 /// False for NaN too.
