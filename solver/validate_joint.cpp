@@ -90,8 +90,9 @@ static Error validate_geometry(const JointDef<D>& def) {
   if (!within(ratio, 1.0e-3f, 1.0e3f)) return invalid("ratio");
   if (!within(def.ground_a, kPositionMax)) return invalid("ground_a");
   if (!within(def.ground_b, kPositionMax)) return invalid("ground_b");
-  if (def.kind != JointKind::kCurve) return {};
+  // Also of a joint that has no curve: a state keeps it, and no enumerator in it may be unknown.
   if (def.curve > CurveKind::kPolyline) return invalid("curve");
+  if (def.kind != JointKind::kCurve) return {};
   if (def.curve == CurveKind::kPolyline) return {};
   const bool two = def.curve == CurveKind::kEllipse;
   if (!within(def.size[0], kSizeMin, kSizeMax)) return invalid("size");

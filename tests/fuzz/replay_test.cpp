@@ -35,7 +35,7 @@ static void damage(std::mt19937& random, Seed& input) {
 }
 
 TEST_P(FuzzReplay, SeedsAndDamagedSeedsKeepThePromises) {
-  constexpr int kInputs = 1500;
+  constexpr int kInputs = 12000;
   const FuzzTarget& target = GetParam();
   const std::vector<Seed> seeds = target.seeds();
   ASSERT_FALSE(seeds.empty());
@@ -50,8 +50,8 @@ TEST_P(FuzzReplay, SeedsAndDamagedSeedsKeepThePromises) {
   }
 }
 
-INSTANTIATE_TEST_SUITE_P(Targets, FuzzReplay, testing::ValuesIn(targets()), [](const auto& info) {
-  std::string name = info.param.name;
+INSTANTIATE_TEST_SUITE_P(Targets, FuzzReplay, testing::ValuesIn(targets()), [](const auto& of) {
+  std::string name = of.param.name;
   std::erase(name, '-');
   return name;
 });

@@ -104,5 +104,14 @@ TEST(HostileSimulation, EveryFlipOfASceneWithCharactersIsRefusedOrSteps) {
   }
 }
 
+/// A scene that can run has to be one that late clients can join: its snapshots are good.
+TEST(HostileSimulation, AnUnknownCurveOfAJointWithoutCurvesIsNoScene) {
+  scenes::Scene scene = catalogue_scene("vehicle");
+  ASSERT_FALSE(scene.joints.empty());
+  ASSERT_NE(scene.joints[0].kind, solver::JointKind::kCurve);
+  scene.joints[0].curve = static_cast<solver::CurveKind>(4);
+  EXPECT_FALSE(scenes::check(scene).empty());
+}
+
 }  // namespace
 }  // namespace cycloid::hostile
