@@ -33,7 +33,7 @@ class Place:
 
 
 def processor_flags() -> set[str]:
-    """What the processor can do, in the words of /proc/cpuinfo; none where there is no such file."""
+    """What the processor can do, as /proc/cpuinfo calls it; nothing where there is no such file."""
     try:
         lines = pathlib.Path("/proc/cpuinfo").read_text(encoding="utf-8").splitlines()
     except OSError:
