@@ -1,5 +1,7 @@
 #include <charconv>
+#include <locale>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "scenes/catalogue.hpp"
 #include "scenes/fields.hpp"
@@ -13,9 +15,11 @@ using Json = nlohmann::ordered_json;
 static double shortest(float value) {
   char text[32];
   const char* end = std::to_chars(text, text + sizeof text, value).ptr;
+  // A stream, because libc++ 19 has no from_chars of a double, and strtod follows the locale.
+  std::istringstream stream(std::string(text, end));
+  stream.imbue(std::locale::classic());
   double result = 0.0;
-  std::from_chars(text, end, result);
-  return result;
+  return stream >> result ? result : static_cast<double>(value);  // What is not finite fails.
 }
 
 static Json json_of(float value) {
