@@ -187,17 +187,16 @@ Verdict check_scene(const scenes::GoldenScene& golden, const CheckOptions& optio
   return verdict;
 }
 
-/// Those of the file that the command line names; all where it names none.
+/// Those of the file that the command line names, in the file's order; all where it names none.
 std::vector<scenes::GoldenScene> chosen(scenes::GoldenFile file, const CheckOptions& options) {
   if (options.scenes.empty()) return std::move(file.scenes);
+  std::set<std::string> wanted(options.scenes.begin(), options.scenes.end());
   std::vector<scenes::GoldenScene> scenes;
-  for (const std::string& name :
-       std::set<std::string>(options.scenes.begin(), options.scenes.end())) {
-    const auto found = std::find_if(file.scenes.begin(), file.scenes.end(),
-                                    [&](const auto& scene) { return scene.name == name; });
-    if (found == file.scenes.end())
-      throw Failure(kExitUsage, "--scene: " + options.file + " has no scene '" + name + "'");
-    scenes.push_back(*found);
+  for (scenes::GoldenScene& scene : file.scenes)
+    if (wanted.erase(scene.name) != 0) scenes.push_back(std::move(scene));
+  if (!wanted.empty()) {
+    throw Failure(kExitUsage,
+                  "--scene: " + options.file + " has no scene '" + *wanted.begin() + "'");
   }
   return scenes;
 }

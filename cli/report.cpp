@@ -217,6 +217,11 @@ Exit publish_failure(Verdict& subject, const std::string& suite, const ReportOpt
   } catch (const Failure& failure) {
     subject.exit = failure.exit;
     subject.text = failure.what();
+    if (subject.text.starts_with(subject.name + ":")) {  // Reports have the name elsewhere.
+      const std::string place = subject.name + ":" + std::to_string(subject.line) + ":";
+      const bool placed = subject.text.starts_with(place);
+      subject.text.erase(0, (placed ? place : subject.name + ":").size() + 1);
+    }
     try {
       publish_files({suite, "run", {subject}}, options, json);
     } catch (const Failure& second) {

@@ -88,7 +88,7 @@ class GoldenReader {
   std::string take(std::string_view text) {
     const Words words = words_of(text);
     if (file_.solver_version == 0) return take_version(words);
-    if (words[0] == "scene" && !in_rows_) return take_scene(words);
+    if (words[0] == "scene") return take_scene(words);
     return take_row(words);
   }
 
@@ -117,6 +117,7 @@ class GoldenReader {
   }
 
   std::string take_scene(const Words& given) {
+    if (in_rows_) return "a scene must be named before the first row";
     GoldenScene scene;
     scene.line = line;
     const Words words = exactly(given, 5);
