@@ -34,10 +34,6 @@ struct Side {
   std::uint64_t ticks(std::uint64_t otherwise) const {
     return log ? log->log.ticks.size() : otherwise;
   }
-  /// @pre it has a log, and 1 <= tick <= its ticks.
-  const protocol::LogTick& recorded(std::uint64_t tick) const {
-    return log->log.ticks[static_cast<std::size_t>(tick - 1)];
-  }
   std::vector<scenes::SeatInput> inputs(std::uint64_t tick) const {
     std::vector<scenes::SeatInput> inputs;
     for (int seat = 0; seat < simulation.seats(); ++seat) {
