@@ -1,5 +1,6 @@
 #include "scene_generated.h"
 #include "scenes/catalogue.hpp"
+#include "scenes/zero_signs.hpp"
 
 namespace cycloid::scenes {
 
@@ -277,6 +278,7 @@ Loaded from_binary(std::span<const std::byte> bytes) {
   Scene scene;
   BinaryReader reader(bytes.size());
   reader.read(*fb::GetScene(data), scene);
+  drop_zero_signs(scene);
   if (reader.overdrawn()) return refuse("is a damaged binary scene: parts of it overlap");
   loaded.mistakes = check(scene);
   if (loaded.mistakes.empty()) loaded.scene = std::move(scene);

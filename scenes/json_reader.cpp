@@ -6,6 +6,7 @@
 
 #include "scenes/catalogue.hpp"
 #include "scenes/fields.hpp"
+#include "scenes/zero_signs.hpp"
 
 namespace cycloid::scenes {
 
@@ -202,6 +203,7 @@ Loaded from_json(std::string_view text) {
   Scene scene;
   JsonReader reader(json, "", loaded.mistakes);
   reader.read_part(scene);
+  drop_zero_signs(scene);
   if (loaded.mistakes.empty()) loaded.mistakes = check(scene);
   if (loaded.mistakes.empty()) loaded.scene = std::move(scene);
   return loaded;
