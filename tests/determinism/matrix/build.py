@@ -81,7 +81,8 @@ def configure_command(row: Row, place: Place) -> list[str]:
     command = ["cmake", "--fresh", "-S", str(place.root), "-B", str(place.folder(row)),
                "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None",
                f"-DCMAKE_CXX_COMPILER={row.compiler}",
-               "-DCYCLOID_NETWORK=OFF", "-DCYCLOID_TESTS=OFF", "-DCYCLOID_EXPERIMENTS=OFF"]
+               "-DCYCLOID_NETWORK=OFF", "-DCYCLOID_TESTS=OFF", "-DCYCLOID_EXPERIMENTS=OFF",
+               "-DCYCLOID_PROGRAM_OPTIONS=-O0"]
     if shutil.which("ccache"):
         command.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
     if row.toolchain:
