@@ -22,8 +22,8 @@ SCENES = (
     "stack-10", "pyramid-20", "room-200", "half-pipe", "ragdolls", "machines", "bridge",
     "dzhanibekov", "top", "vehicle-3d", "ragdolls-3d", "wall", "pyramid-3d", "ball-pit-3d",
 )
-WARM_TICKS = 60
-TIMED_TICKS = 60
+WARM_TICKS = 20
+TIMED_TICKS = 40  # Before piles fall asleep.
 
 
 @dataclass(frozen=True)
@@ -69,8 +69,8 @@ def ratio(base: list[Sample], other: list[Sample]) -> Ratio:
     """@pre as many samples of both, round by round."""
     ratios = [b.cost / a.cost for a, b in zip(base, other)]
     quartiles = statistics.quantiles(ratios, n=4) if len(ratios) > 1 else [ratios[0]] * 3
-    return Ratio(statistics.median(ratios), quartiles[0], quartiles[2],
-                 other[0].rows / max(1, base[0].rows))
+    rows = other[0].rows / base[0].rows if base[0].rows else 1.0
+    return Ratio(statistics.median(ratios), quartiles[0], quartiles[2], rows)
 
 
 def measure(builds: dict[str, str], arguments: argparse.Namespace) -> Samples:
