@@ -3,9 +3,9 @@
 
     cost.py --csv FILE [--rounds N] [--count] NAME=PROGRAM NAME=PROGRAM...
 
-The first build is what the others are divided by. In each round every build runs each scene once, one
-after the other, so that what else the machine does meets all of them; the ratio of a scene is the
-median of its rounds' ratios, the spread their quartiles. --count counts instructions instead, under
+The first build is what the others are divided by. In each round every build runs each scene once,
+one after the other, so that what else the machine does meets all of them; the ratio of a scene is
+the median of its rounds' ratios, the spread their quartiles. --count counts instructions instead, under
 valgrind's callgrind, which repeats exactly but knows no AVX-512.
 """
 
@@ -22,8 +22,8 @@ SCENES = (
     "stack-10", "pyramid-20", "room-200", "half-pipe", "ragdolls", "machines", "bridge",
     "dzhanibekov", "top", "vehicle-3d", "ragdolls-3d", "wall", "pyramid-3d", "ball-pit-3d",
 )
-WARM_TICKS = 60
-TIMED_TICKS = 60
+WARM_TICKS = 20
+TIMED_TICKS = 40  # Before piles fall asleep.
 
 
 @dataclass(frozen=True)
@@ -33,6 +33,9 @@ class Sample:
     cost: float  # Microseconds per tick, or instructions.
     rows: int  # That were solved: builds with other arithmetic go another way.
     digest: str
+
+
+Samples = dict[str, dict[str, list[Sample]]]  # By scene, then by build.
 
 
 @dataclass(frozen=True)
@@ -66,17 +69,13 @@ def ratio(base: list[Sample], other: list[Sample]) -> Ratio:
     """@pre as many samples of both, round by round."""
     ratios = [b.cost / a.cost for a, b in zip(base, other)]
     quartiles = statistics.quantiles(ratios, n=4) if len(ratios) > 1 else [ratios[0]] * 3
-    return Ratio(statistics.median(ratios), quartiles[0], quartiles[2],
-                 other[0].rows / max(1, base[0].rows))
+    rows = other[0].rows / base[0].rows if base[0].rows else 1.0
+    return Ratio(statistics.median(ratios), quartiles[0], quartiles[2], rows)
 
 
-def geometric_mean(values: list[float]) -> float:
-    return statistics.geometric_mean(values)
-
-
-def measure(builds: dict[str, str], arguments: argparse.Namespace) -> dict[str, dict[str, list[Sample]]]:
+def measure(builds: dict[str, str], arguments: argparse.Namespace) -> Samples:
     """By scene and build, one sample of each round."""
-    samples: dict[str, dict[str, list[Sample]]] = {s: {b: [] for b in builds} for s in SCENES}
+    samples: Samples = {s: {b: [] for b in builds} for s in SCENES}
     for round_index in range(arguments.rounds):
         for scene in SCENES:
             # Turn about, so that none always runs first.
@@ -88,7 +87,7 @@ def measure(builds: dict[str, str], arguments: argparse.Namespace) -> dict[str, 
     return samples
 
 
-def print_table(samples: dict[str, dict[str, list[Sample]]], builds: dict[str, str], unit: str) -> None:
+def print_table(samples: Samples, builds: dict[str, str], unit: str) -> None:
     """The table of docs/performance.md."""
     base, *others = builds
     columns = [f"{name} / {base} (quartiles) | rows" for name in others]
@@ -103,11 +102,11 @@ def print_table(samples: dict[str, dict[str, list[Sample]]], builds: dict[str, s
             cells.append(f"{found.median:.3f} ({found.low:.3f} to {found.high:.3f})")
             cells.append(f"{found.rows:.3f}")
         print("| " + " | ".join(cells) + " |")
-    means = [f"**{geometric_mean(medians[name]):.3f}** | " for name in others]
+    means = [f"**{statistics.geometric_mean(medians[name]):.3f}** | " for name in others]
     print("| geometric mean | | " + " | ".join(means) + " |")
 
 
-def write_csv(path: str, samples: dict[str, dict[str, list[Sample]]], unit: str) -> None:
+def write_csv(path: str, samples: Samples, unit: str) -> None:
     with open(path, "w", newline="", encoding="utf-8") as file:
         writer = csv.writer(file)
         writer.writerow(["scene", "build", "round", unit, "rows", "digest"])
@@ -117,8 +116,8 @@ def write_csv(path: str, samples: dict[str, dict[str, list[Sample]]], unit: str)
                     writer.writerow([scene, name, index + 1, one.cost, one.rows, one.digest])
 
 
-def strict_builds_differ(samples: dict[str, dict[str, list[Sample]]]) -> list[str]:
-    """Scenes in which builds that are not free end otherwise: what they cost is beside the point."""
+def strict_builds_differ(samples: Samples) -> list[str]:
+    """Scenes in which builds that are not free end otherwise, so that no cost can be compared."""
     return [
         scene for scene, by_build in samples.items()
         if len({s.digest for n, rounds in by_build.items() if "free" not in n for s in rounds}) > 1
@@ -141,7 +140,7 @@ def main() -> int:
     write_csv(arguments.csv, samples, unit)
     print_table(samples, builds, unit)
     if differ := strict_builds_differ(samples):
-        print(f"cost.py: deterministic builds end otherwise in {', '.join(differ)}", file=sys.stderr)
+        print(f"cost.py: deterministic builds differ in {', '.join(differ)}", file=sys.stderr)
         return 1
     return 0
 

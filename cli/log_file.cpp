@@ -4,7 +4,6 @@
 #include <vector>
 
 #include "cli/output.hpp"
-#include "scenes/reasons.hpp"
 
 namespace cycloid::cli {
 
@@ -106,9 +105,6 @@ std::string divergence_text(const Divergence& divergence) {
 scenes::Simulation make_simulation(const scenes::Scene& scene, int workers, int lanes) {
   auto simulation = scenes::Simulation::create(scene);
   if (!simulation.ok()) {
-    const std::string field = simulation.error().field;
-    if (field.starts_with("floating_point_"))
-      throw Failure(kExitIncompatible, field + " " + scenes::reason_of(simulation.error()));
     throw Failure(kExitCorrupt, "the scene cannot run: " + error_text(simulation.error()));
   }
   if (const solver::Error error = simulation.value().set_workers(workers); !error.ok()) {

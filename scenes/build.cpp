@@ -100,6 +100,7 @@ class Builder {
     if (field == "gravity" || field == "materials") return "/" + field;
     if (field == "tick_s") return "/tick_hz";
     if (field.starts_with("limits.")) return "/limits/" + field.substr(7);
+    if (field.starts_with("floating_point_")) return field;  // Of the process, not of the scene.
     return "/tuning/" + field;
   }
 

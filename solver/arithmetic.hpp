@@ -8,7 +8,7 @@
     defined(__NO_SIGNED_ZEROS__) || (defined(__FINITE_MATH_ONLY__) && __FINITE_MATH_ONLY__)
 #error \
     "Cycloid refuses -ffast-math and its parts (-Ofast, -funsafe-math-optimizations, \
--ffinite-math-only): equal inputs would not give equal bits. Remove the flag, or add -fno-fast-math."
+-ffinite-math-only): equal inputs would not give equal bits. Remove it or add -fno-fast-math."
 #endif
 #if defined(__FLT_EVAL_METHOD__) && __FLT_EVAL_METHOD__ != 0
 #error \

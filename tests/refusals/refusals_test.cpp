@@ -4,6 +4,7 @@
 
 #include <cfenv>
 #include <thread>
+#include <vector>
 
 #include "scenes/catalogue.hpp"
 #include "scenes/simulation.hpp"
@@ -104,14 +105,15 @@ TEST(Refusals, PoolMadeBeforeGoesOnAsItWasWhenTheThreadIsMended) {
   auto alone = scenes::Simulation::create(scene);
   ASSERT_TRUE(pooled.ok() && alone.ok());
   ASSERT_TRUE(pooled.value().set_workers(4).ok());
+  const std::vector<scenes::SeatInput> inputs(static_cast<std::size_t>(alone.value().seats()));
   for (int tick = 0; tick < 20; ++tick) {
     if (tick % 5 == 0) {
       load_flushing_library();
-      EXPECT_STREQ(pooled.value().step({}).field, "floating_point_mode");
+      EXPECT_STREQ(pooled.value().step(inputs).field, "floating_point_mode");
       mode.back();
     }
-    ASSERT_TRUE(pooled.value().step({}).ok());
-    ASSERT_TRUE(alone.value().step({}).ok());
+    ASSERT_TRUE(pooled.value().step(inputs).ok());
+    ASSERT_TRUE(alone.value().step(inputs).ok());
     EXPECT_EQ(pooled.value().digest(), alone.value().digest()) << "tick " << tick;
   }
 }

@@ -87,12 +87,14 @@ static const std::vector<Rule>& rules() {
         "__attribute__((cold, __target_clones__(x))) void f();"},
        "[[gnu::always_inline]] bool optimize(Target target);",
        true},
-      {R"(\blong\s+double\b|\b_*[Ff]loat(16|32|64|80|128)_*[xt]?\b|\b__fp16\b|\b__bf16\b|std::complex\b)",
+      {R"(\blong\s+double\b|\b_*[Ff]loat(16|32|64|80|128)_*[xt]?\b|\b__(fp|bf)16\b|)"
+       R"(std::complex\b)",
        "a number that every processor has in the same form: float",
        {"long double x;", "_Float16 x;", "__float128 x;"},
        "float x32; my_float16x4 y;",
        true},
-      {R"(^\s*(const\s+)?((un)?signed\s+|std::)?(bool|char|short|int|long|unsigned|u?int\d+_t|[A-Z]\w*))"
+      {R"(^\s*(const\s+)?((un)?signed\s+|std::)?(bool|char|short|int|long|unsigned|)"
+       R"(u?int\d+_t|[A-Z]\w*))"
        R"(\s+\w+\s*:\s*\d+\s*[;=,{])",
        "compilers lay out bit-fields otherwise: a whole std::uint8_t, or masks and shifts",
        {"  std::uint32_t kind : 3;", "unsigned a : 1, b : 2;", "  bool asleep : 1 = false;"},

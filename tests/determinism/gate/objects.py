@@ -123,14 +123,14 @@ def names_by_member(listing: str, file: str) -> Iterator[tuple[str, str, bool]]:
 
 
 def foreign_imports(listings: Iterable[tuple[str, str]], imports: Imports) -> list[str]:
-    """One line for each name that an object needs, that none of the files has, and is not listed."""
+    """One line for each name that an object needs, that no file defines, and that is not listed."""
     needed: dict[tuple[str, str], None] = {}
     defined: set[str] = set()
     for file, listing in listings:
         for member, name, is_defined in names_by_member(listing, file):
             if "__gnu_lto_slim" in name:
-                raise CannotJudge(f"{file}: {member} holds no machine code (link-time optimisation);"
-                                  " give the linked program and --instructions-only")
+                raise CannotJudge(f"{file}: {member} holds no machine code yet (-flto); give the "
+                                  "linked program and --instructions-only")
             if is_defined:
                 defined.add(name)
             else:
@@ -139,7 +139,7 @@ def foreign_imports(listings: Iterable[tuple[str, str]], imports: Imports) -> li
         raise CannotJudge("no names were read")
     return [
         f"{member}: imports {name}\n  not in the list: the solver takes no libm, clock, chance, "
-        "environment, locale or streams; where it is harmless, add it to imports.txt with the reason"
+        "environment, locale or streams; where it is harmless, add it to imports.txt, and say why"
         for member, name in needed
         if name not in defined and not imports.allow(member, name)
     ]

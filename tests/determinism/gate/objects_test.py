@@ -27,8 +27,8 @@ INSTRUCTIONS = {
         "vfmadd132ss %xmm0,%xmm1,%xmm2; vfmaddsub231ps %ymm0,%ymm1,%ymm2; vfnmadd213sd; "
         "vfmsubadd132ps; vfmaddps %xmm0,%xmm1; v4fmaddps; rcpps; vrcp14ps; rsqrtss; vrsqrt28sd; "
         "faddp; fmuls (%rax); fsqrt",
-        "vaddps %ymm0,%ymm1; vmulss; vaddsubps; vsqrtps; vdivss; vpmaddwd; flds (%rax); vfpclassps; "
-        "vpsadbw; prefetcht0; vpmadd52luq",
+        "vaddps %ymm0,%ymm1; vmulss; vaddsubps; vsqrtps; vdivss; vpmaddwd; flds (%rax); "
+        "vfpclassps; vpsadbw; prefetcht0; vpmadd52luq",
     ),
     "elf32-i386": ("fadds 0x0(%ebx); fmulp; fidivl", "fildll (%esp); fstps; fxch; addss"),
     "pe-x86-64": ("vfmadd231ss", "mulss"),
@@ -41,12 +41,18 @@ INSTRUCTIONS = {
         "vfma.f32 s0, s1; vfnms.f64; vrecpe.f32 q0; vrsqrts.f32; vadd.f32 q8, q9; vmla.f32 d0, d1",
         "vmla.f32 s0, s1, s2; vmls.f64 d0, d1; vadd.f64 d0, d1; vmul.f32 s0, s1; vadd.i32 q0, q1",
     ),
-    "elf64-littleriscv": ("fmadd.s; fnmsub.d; vfmacc.vv; vfrsqrt7.v", "fmul.s; fadd.s; fmv.w.x; vfmul.vv"),
+    "elf64-littleriscv": (
+        "fmadd.s; fnmsub.d; vfmacc.vv; vfrsqrt7.v",
+        "fmul.s; fadd.s; fmv.w.x; vfmul.vv",
+    ),
     "elf64-powerpcle": (
         "fmadds f0; fnmsub; xvmaddasp; xsnmsubmdp; vmaddfp; vnmsubfp; fres; xvrsqrtesp",
         "fmuls; fadds; xvmulsp; maddld; xssqrtsp; fmr; vmsumuhm",
     ),
-    "elf64-s390": ("maebr; madb; msebr; wfmadb; vfmasb; wfnmssb", "meebr; aebr; msgr; vfmaxsb; ms; msy"),
+    "elf64-s390": (
+        "maebr; madb; msebr; wfmadb; vfmasb; wfnmssb",
+        "meebr; aebr; msgr; vfmaxsb; ms; msy",
+    ),
     "wasm": ("f32x4.relaxed_madd", "f32x4.mul; f32x4.add"),
 }
 
@@ -119,7 +125,8 @@ class Objects(Planted):
         caller = self.compile("int g(); int f() { return g() + 1; }")
         self.expect(caller, 1, "imports g()")
         os.rename(caller, self.folder / "caller.o")
-        status, text = self.gate(str(self.folder / "caller.o"), self.compile("int g() { return 1; }"))
+        callee = self.compile("int g() { return 1; }")
+        status, text = self.gate(str(self.folder / "caller.o"), callee)
         self.assertEqual(status, 0, text)
 
     def test_what_another_file_keeps_for_itself_is_an_import(self) -> None:
