@@ -1,7 +1,5 @@
 #include <charconv>
-#include <locale>
 #include <nlohmann/json.hpp>
-#include <sstream>
 
 #include "scenes/catalogue.hpp"
 #include "scenes/fields.hpp"
@@ -11,15 +9,13 @@ namespace cycloid::scenes {
 /// Keys in the order of the fields.
 using Json = nlohmann::ordered_json;
 
-/// The double that is written as the shortest decimal which reads back as this float.
+/// The double that is written as the shortest decimal which reads back as this float. By the JSON
+/// library, because libc++ 19 has no from_chars of a double, and strtod follows the locale.
 static double shortest(float value) {
   char text[32];
-  char* const end = std::to_chars(text, text + sizeof text, value).ptr;
-  // A stream, because libc++ 19 has no from_chars of a double, and strtod follows the locale.
-  std::istringstream stream(std::string(text, end));
-  stream.imbue(std::locale::classic());
-  double result = 0.0;
-  return stream >> result ? result : static_cast<double>(value);  // What is not finite fails.
+  const char* end = std::to_chars(text, text + sizeof text, value).ptr;
+  const Json number = Json::parse(static_cast<const char*>(text), end, nullptr, false);
+  return number.is_number() ? number.get<double>() : static_cast<double>(value);
 }
 
 static Json json_of(float value) {

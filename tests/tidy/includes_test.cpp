@@ -22,9 +22,10 @@ static const std::map<std::string, std::vector<std::string>> kAllowed = {
     {"client", {"solver/", "scenes/", "protocol/", "client/", "asio"}},
     {"cli",
      {"solver/", "scenes/", "protocol/", "server/", "client/", "bench/", "cli/", "asio", "spdlog/",
-      "CLI/", "nlohmann/", "fcntl.h", "unistd.h", "sys/", "signal.h", "poll.h", "spawn.h"}},
-    {"bench", {"solver/", "scenes/", "protocol/", "bench/", "Eigen/", "benchmark/", "btBullet",
-      "malloc.h"}},
+      "CLI/", "nlohmann/", "fcntl.h", "unistd.h", "sys/", "signal.h", "poll.h", "spawn.h",
+      "dirent.h", "io.h"}},
+    {"bench",
+     {"solver/", "scenes/", "protocol/", "bench/", "Eigen/", "benchmark/", "btBullet", "malloc.h"}},
 };
 
 /// All that the solver may take from the standard library. What is not here brings a clock, chance,
