@@ -6,6 +6,8 @@ import hashlib
 import json
 import pathlib
 import shutil
+import subprocess
+import sys
 
 from build import Place, RowFailed, build, run
 from rows import Check, Matrix, Row
@@ -95,6 +97,20 @@ def compare_all(row: Row, matrix: Matrix, place: Place) -> int:
                 raise
             found = _blame(row, matrix, place, mismatch.scene, mismatch.check)
             raise RowFailed(f"{mismatch}\n{found}") from mismatch
+
+
+def read_objects(row: Row, place: Place) -> None:
+    """RowFailed where the solver or the scenes were compiled into an instruction that rounds
+    otherwise: the digests of the catalogue's scenes need not meet it."""
+    if not row.objdump:
+        return
+    archives = [place.folder(row) / part / f"libcycloid_{part}.a" for part in ("solver", "scenes")]
+    gate = place.root / "tests/determinism/gate/objects.py"
+    done = subprocess.run([sys.executable, str(gate), "--objdump", row.objdump,
+                           "--instructions-only", *map(str, archives)],
+                          capture_output=True, text=True, check=False)
+    if done.returncode != 0:
+        raise RowFailed(f"its objects: {(done.stdout + done.stderr).strip()}")
 
 
 def write_logs(row: Row, matrix: Matrix, place: Place) -> pathlib.Path:

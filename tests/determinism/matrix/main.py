@@ -72,9 +72,11 @@ def _make(result: report.Result, matrix: rows.Matrix, place: build.Place) -> pat
     started = time.monotonic()
     (place.folder(result.row) / "run.log").unlink(missing_ok=True)
     folder = None
-    for step in ("logs", "goldens"):  # A row whose bits differ still writes its logs.
+    for step in ("objects", "logs", "goldens"):  # A row whose bits differ still writes its logs.
         try:
-            if step == "logs":
+            if step == "objects":
+                checks.read_objects(result.row, place)
+            elif step == "logs":
                 folder = checks.write_logs(result.row, matrix, place)
             else:
                 result.digests = checks.compare_all(result.row, matrix, place)

@@ -46,6 +46,7 @@ class Row:
     packages: tuple[str, ...] = ()  # To be installed by ./dev.
     unpacked: tuple[str, ...] = ()  # To be unpacked beside the system, because they conflict.
     cpu: tuple[str, ...] = ()  # What the processor must have, as /proc/cpuinfo calls it.
+    objdump: str = ""  # Disassembles for the target; none: the objects are not read.
     quick: bool = False
     timeout_s: int = 3600  # Of a single run of the program.
 
