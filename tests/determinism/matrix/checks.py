@@ -12,6 +12,8 @@ import sys
 from build import Place, RowFailed, build, run
 from rows import Check, Matrix, Row
 
+GATE = pathlib.Path(__file__).resolve().parents[1] / "gate/objects.py"
+
 
 def golden_ticks(file: pathlib.Path) -> dict[str, int]:
     """The scenes of the table of goldens, with the last tick of each."""
@@ -105,8 +107,7 @@ def read_objects(row: Row, place: Place) -> None:
     if not row.objdump:
         return
     archives = [place.folder(row) / part / f"libcycloid_{part}.a" for part in ("solver", "scenes")]
-    gate = place.root / "tests/determinism/gate/objects.py"
-    done = subprocess.run([sys.executable, str(gate), "--objdump", row.objdump,
+    done = subprocess.run([sys.executable, str(GATE), "--objdump", place.text(row, row.objdump),
                            "--instructions-only", *map(str, archives)],
                           capture_output=True, text=True, check=False)
     if done.returncode != 0:

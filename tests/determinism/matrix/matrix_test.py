@@ -178,6 +178,20 @@ class MatrixTest(unittest.TestCase):
         self.assertIn("FAILED: this processor lacks avx1024", said)
         self.assertIn("0 of 2 rows equal, 2 failed", said)
 
+    def test_a_fused_operation_in_an_object_fails_the_row(self) -> None:
+        objdump = self.root / "objdump"
+        for instruction, code in (("vaddss", 0), ("vfmadd213ss", 1)):
+            lines = ["x.o:     file format elf64-x86-64", "0000 <turn>:",
+                     f"  0: {instruction} %xmm0,%xmm1,%xmm2"]
+            objdump.write_text("#!/bin/sh\n" + "".join(f"echo '{line}'\n" for line in lines),
+                               encoding="utf-8")
+            objdump.chmod(0o755)
+            reads = ROWS.replace('name = "other"', 'name = "other"\nobjdump = "{root}/objdump"')
+            with mock.patch.object(sys.modules[__name__], "ROWS", reads):
+                found, said = self.matrix("--row", "other")
+            self.assertEqual(found, code, said)
+            self.assertEqual("its objects: x.o: turn: vfmadd213ss" in said, code == 1, said)
+
     def test_a_build_that_breaks_fails_with_the_end_of_its_log(self) -> None:
         self.matrix("--row", "good")
         code, said = self.matrix("--row", "good", breaks=True)
