@@ -10,3 +10,5 @@ set(CMAKE_CXX_FLAGS_INIT
   "-fignore-exceptions -isystem ${CMAKE_CURRENT_LIST_DIR}/wasi ${CYCLOID_WASM_FEATURES}")
 # The linker's own 64 KiB of stack are too few for a step.
 set(CMAKE_EXE_LINKER_FLAGS_INIT "-Wl,-z,stack-size=8388608")
+# CLI11 reads numbers as long double, which wasi's C library leaves out of its scanf unless asked.
+set(CMAKE_CXX_STANDARD_LIBRARIES_INIT -lc-printscan-long-double)
