@@ -2,12 +2,14 @@
 # What a build needs from the distribution. Sourced by ./dev.
 
 packages=(
-  g++ cmake ninja-build ccache git          # the tools
+  g++ cmake ninja-build ccache git python3  # the tools
   libeigen3-dev libxxhash-dev               # solver: small matrices; hashing
   nlohmann-json3-dev libflatbuffers-dev     # scenes and protocol: JSON; binary forms
   flatbuffers-compiler
   libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
   libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
+  librapidcheck-dev                         # tests of properties: random cases that shrink
+  python3                                   # scripts that measure and that read objects
   gnuplot-nox                               # figures of the experiments
 )
 

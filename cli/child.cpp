@@ -1,40 +1,54 @@
 #include "cli/child.hpp"
 
+#include <system_error>
+#include <utility>
+
+// The one place that knows where processes can be started.
+#if defined(__unix__) || defined(__APPLE__)
+
 #include <fcntl.h>
 #include <poll.h>
+#ifdef __linux__
 #include <sys/prctl.h>
+#endif
 #include <sys/wait.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cerrno>
 #include <csignal>
-#include <system_error>
-#include <utility>
 
 namespace cycloid::cli {
 namespace {
 
 /// Between fork and exec only async-signal-safe calls are allowed; this never returns.
-[[noreturn]] void become(char** arguments, int out, int err) {
+[[noreturn]] void become(char** command, int out, int err) {
   setpgid(0, 0);  // A ^C of the terminal is for the parent, which then decides the order.
+#ifdef __linux__
   prctl(PR_SET_PDEATHSIG, SIGTERM);
+#endif
   dup2(out, STDOUT_FILENO);
   dup2(err, STDERR_FILENO);
-  execv("/proc/self/exe", arguments);
+  execvp(command[0], command);
   _exit(127);
 }
 
 void make_pipe(int (&ends)[2]) {
-  if (pipe2(ends, O_CLOEXEC) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  if (pipe(ends) != 0) throw std::system_error(errno, std::generic_category(), "pipe");
+  for (const int end : ends) fcntl(end, F_SETFD, FD_CLOEXEC);
 }
 
 }  // namespace
 
-Child::Child(std::string name, const std::vector<std::string>& arguments) : name_(std::move(name)) {
-  std::string program = "cycloid";
-  std::vector<std::string> words = arguments;
-  std::vector<char*> pointers = {program.data()};
+std::string this_program() {
+  return "/proc/self/exe";
+}
+
+Child::Child(std::string name, const std::vector<std::string>& command,
+             std::size_t output_bytes_max)
+    : name_(std::move(name)), output_bytes_max_(output_bytes_max) {
+  std::vector<std::string> words = command;
+  std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
   pointers.push_back(nullptr);
 
@@ -72,10 +86,10 @@ void Child::ask_to_stop() {
 }
 
 void Child::drain(Stream& stream) {
-  char bytes[4096];
+  char bytes[65536];
   const ssize_t count = read(stream.fd, bytes, sizeof bytes);
   if (count > 0) {
-    const std::size_t room = kOutputBytesMax - stream.text.size();
+    const std::size_t room = output_bytes_max_ - stream.text.size();
     stream.text.append(bytes, std::min(static_cast<std::size_t>(count), room));
   } else if (count == 0 || errno != EINTR) {
     close(std::exchange(stream.fd, -1));
@@ -84,7 +98,7 @@ void Child::drain(Stream& stream) {
 
 void Child::reap(int flags) {
   int status = 0;
-  pid_t reaped = 0;
+  int reaped = 0;
   do {
     reaped = waitpid(pid_, &status, flags);
   } while (reaped < 0 && errno == EINTR);
@@ -119,3 +133,31 @@ bool pump(const std::vector<Child*>& children, std::chrono::steady_clock::time_p
 }
 
 }  // namespace cycloid::cli
+
+#else
+
+namespace cycloid::cli {
+
+std::string this_program() {
+  return "";
+}
+
+Child::Child(std::string, const std::vector<std::string>& command, std::size_t)
+    : output_bytes_max_(0) {
+  throw std::system_error(std::make_error_code(std::errc::function_not_supported),
+                          "cannot start " + command.front() + ": not on this platform");
+}
+Child::~Child() = default;
+bool Child::finished() const {
+  return true;
+}
+void Child::ask_to_stop() {}
+
+bool pump(const std::vector<Child*>&, std::chrono::steady_clock::time_point,
+          const std::function<bool()>& done) {
+  return done();
+}
+
+}  // namespace cycloid::cli
+
+#endif

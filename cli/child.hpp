@@ -1,7 +1,5 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <chrono>
 #include <cstddef>
 #include <functional>
@@ -11,14 +9,21 @@
 
 namespace cycloid::cli {
 
-/// A process that runs this very program; its output is collected. Whoever destroys it ends and
-/// reaps it, and it ends by itself when this process dies.
+/// What names this very program in a Child's command.
+std::string this_program();
+
+/// A process; its output is collected. Whoever destroys it ends and reaps it, and on Linux it ends
+/// by itself when this process dies. Where a platform has no processes to start, the constructor
+/// throws and says so.
 class Child {
  public:
-  /// Most bytes kept of each stream; the rest is read and dropped, so that nobody blocks.
+  /// Most bytes kept of each stream, unless the owner wants more; the rest is read and dropped, so
+  /// that nobody blocks.
   static constexpr std::size_t kOutputBytesMax = std::size_t{1} << 20;
 
-  Child(std::string name, const std::vector<std::string>& arguments);
+  /// @param command  The program, looked for in PATH where it has no slash, and its arguments.
+  Child(std::string name, const std::vector<std::string>& command,
+        std::size_t output_bytes_max = kOutputBytesMax);
   Child(const Child&) = delete;
   Child& operator=(const Child&) = delete;
   ~Child();
@@ -43,7 +48,8 @@ class Child {
   void reap(int flags);
 
   std::string name_;
-  pid_t pid_ = -1;
+  std::size_t output_bytes_max_;
+  int pid_ = -1;
   Stream streams_[2];
   std::optional<int> exit_code_;
 };

@@ -65,7 +65,9 @@ class Demo {
 
  private:
   Child& start(const std::string& name, const std::vector<std::string>& arguments) {
-    children_.push_back(std::make_unique<Child>(name, arguments));
+    std::vector<std::string> command = {this_program()};
+    command.insert(command.end(), arguments.begin(), arguments.end());
+    children_.push_back(std::make_unique<Child>(name, command));
     everyone_.push_back(children_.back().get());
     return *children_.back();
   }

@@ -32,6 +32,17 @@ static void find_below(const std::string& folder, const std::string& suffix,
   }
 }
 
+std::string path_from(const std::string& file, const std::string& path) {
+  const std::filesystem::path folder = std::filesystem::absolute(file).parent_path();
+  const std::filesystem::path whole = std::filesystem::absolute(path).lexically_normal();
+  const std::string name = whole.lexically_relative(folder.lexically_normal()).generic_string();
+  return name.empty() ? whole.generic_string() : name;
+}
+
+std::string path_to(const std::string& file, const std::string& name) {
+  return (std::filesystem::path(file).parent_path() / name).string();
+}
+
 #else  // The C++ library of wasi has no <filesystem>; POSIX is there.
 
 PathKind kind_of(const std::string& path) {
@@ -51,6 +62,14 @@ static void find_below(const std::string& folder, const std::string& suffix,
     if (entry->d_type == DT_DIR) find_below(path, suffix, found);
     if (name.ends_with(suffix) && kind_of(path).is_file) found.push_back(path);
   }
+}
+
+std::string path_from(const std::string&, const std::string& path) {
+  return path;
+}
+
+std::string path_to(const std::string& file, const std::string& name) {
+  return name.starts_with('/') ? name : file.substr(0, file.rfind('/') + 1) + name;
 }
 
 #endif

@@ -17,4 +17,10 @@ PathKind kind_of(const std::string& path);
 /// Folders behind links are not entered. @throws std::exception where a folder cannot be read.
 std::vector<std::string> files_below(const std::string& folder, const std::string& suffix);
 
+/// How a file names another: the path from the folder of `file`, with '/' between the parts, and an
+/// absolute one where there is no way. Without <filesystem> the path as it is.
+std::string path_from(const std::string& file, const std::string& path);
+/// What `path_from` made, as a path from the current folder again.
+std::string path_to(const std::string& file, const std::string& name);
+
 }  // namespace cycloid::cli

@@ -17,7 +17,10 @@ std::string LoadedLog::blemish() const {
 }
 
 LoadedLog load_log(const std::string& file) {
-  const std::vector<std::byte> bytes = read_file(file);
+  return parse_log(file, read_file(file));
+}
+
+LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes) {
   protocol::Log log = protocol::read_log(bytes);
   if (log.state == LogState::kCorrupt)
     throw Failure(kExitCorrupt, file + ": corrupt: " + log.reason);

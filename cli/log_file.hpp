@@ -4,6 +4,7 @@
 #include <fstream>
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
@@ -29,6 +30,8 @@ struct LoadedLog {
 /// Reads a log of which at least a prefix is good. A Failure (corrupt, incompatible, I/O) names the
 /// file and what is wrong with it.
 LoadedLog load_log(const std::string& file);
+/// The same of bytes that are in memory; `file` is what a Failure calls them.
+LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes);
 
 /// Writes a log of a headless run.
 class LogWriter {

@@ -11,6 +11,8 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "scenes/reasons.hpp"
+#include "solver/floating_point_mode.hpp"
 
 namespace cycloid::cli {
 
@@ -40,7 +42,10 @@ static Exit parse_and_run(int argc, char** argv) {
   add_run(app, action);
   add_replay(app, action);
   add_verify(app, action);
+  add_golden(app, action);
   add_diff(app, action);
+  add_trace(app, action);
+  add_bisect(app, action);
   add_scene(app, action);
 #ifdef CYCLOID_EXPERIMENTS
   add_experiments(app, action);
@@ -55,6 +60,8 @@ static Exit parse_and_run(int argc, char** argv) {
     throw Failure(kExitUsage, std::string(error.what()) + " (see --help)");
   }
   if (!action.run) throw Failure(kExitUsage, "a subcommand is required (see --help)");
+  if (const auto error = solver::check_arithmetic(solver::rounds_as_written()); !error.ok())
+    throw Failure(kExitIncompatible, std::string(error.field) + " " + scenes::reason_of(error));
   return action.run();
 }
 

@@ -1,12 +1,13 @@
 #include <algorithm>
-#include <iostream>
+#include <chrono>
 #include <memory>
 #include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/files.hpp"
 #include "cli/log_file.hpp"
-#include "cli/output.hpp"
+#include "cli/report.hpp"
+#include "cli/side_by_side.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -16,13 +17,8 @@ struct VerifyOptions {
   bool allow_open = false;
   int workers = 1;
   int lanes = kLanesDefault;
-};
-
-struct Verdict {
-  std::string file;
-  Exit exit = kExitGood;
-  std::uint64_t ticks = 0;
-  std::string text;
+  int jobs = 1;
+  ReportOptions report;
 };
 
 /// The files named, and of each folder the *.cylog anywhere in it, by name.
@@ -41,7 +37,9 @@ std::vector<std::string> logs_of(const std::vector<std::string>& paths) {
 }
 
 Verdict verify_log(const std::string& file, const VerifyOptions& options) {
-  Verdict verdict{file, kExitGood, 0, "good"};
+  Verdict verdict;
+  verdict.name = file;
+  const auto start = std::chrono::steady_clock::now();
   try {
     const LoadedLog loaded = load_log(file);
     ReplayOptions replaying;
@@ -59,39 +57,19 @@ Verdict verify_log(const std::string& file, const VerifyOptions& options) {
     }
   } catch (const Failure& failure) {  // One bad log must not hide the verdict on the others.
     verdict.exit = failure.exit;
-    verdict.text = std::string(failure.what()).substr(file.size() + 2);
+    verdict.text = failure.what();
+    if (verdict.text.starts_with(file + ": ")) verdict.text.erase(0, file.size() + 2);
   }
+  verdict.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
   return verdict;
 }
 
 Exit verify_logs(const VerifyOptions& options, bool json) {
-  Exit worst = kExitGood;
-  std::uint64_t good = 0;
-  std::uint64_t ticks = 0;
-  Json logs = Json::array();
   const std::vector<std::string> files = logs_of(options.paths);
-  for (const std::string& file : files) {
-    const Verdict verdict = verify_log(file, options);
-    worst = std::max(worst, verdict.exit);
-    good += verdict.exit == kExitGood ? 1 : 0;
-    ticks += verdict.ticks;
-    if (json) {
-      logs.push_back({{"log", file},
-                      {"good", verdict.exit == kExitGood},
-                      {"ticks", verdict.ticks},
-                      {"verdict", verdict.text},
-                      {"exit", static_cast<int>(verdict.exit)}});
-    } else {
-      std::cout << file << ": " << verdict.text << ", " << verdict.ticks << " ticks\n";
-    }
-  }
-  if (json) {
-    print_json({{"logs", logs}, {"good", good}, {"bad", files.size() - good}, {"ticks", ticks}},
-               worst);
-  } else {
-    std::cout << good << " of " << files.size() << " logs good, " << ticks << " ticks replayed\n";
-  }
-  return worst;
+  Report report{"cycloid verify", "log", std::vector<Verdict>(files.size())};
+  side_by_side(files.size(), options.jobs,
+               [&](std::size_t i) { report.verdicts[i] = verify_log(files[i], options); });
+  return publish(report, options.report, json);
 }
 
 }  // namespace
@@ -108,8 +86,17 @@ void add_verify(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   add_lanes_option(command, options->lanes);
+  command->add_option("--jobs", options->jobs, "Logs side by side")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256));
+  add_report_options(command, options->report);
   command->callback([options, &action] {
-    action.run = [=, &action] { return verify_logs(*options, action.json); };
+    action.run = [=, &action] {
+      Verdict subject;
+      subject.name = options->paths.front();
+      return publish_failure(subject, "cycloid verify", options->report, action.json,
+                             [&] { return verify_logs(*options, action.json); });
+    };
   });
 }
 

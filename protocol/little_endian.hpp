@@ -12,9 +12,9 @@ namespace cycloid::protocol {
 /// Appends an unsigned integer, least significant byte first.
 template <class U>
 void append_little(U value, std::vector<std::byte>& into) {
-  std::byte bytes[sizeof(U)];
-  solver::store_little(value, bytes);
-  into.insert(into.end(), bytes, bytes + sizeof(U));
+  // Not by insert: GCC 12 for 32-bit targets believes that it writes into nothing.
+  into.resize(into.size() + sizeof(U));
+  solver::store_little(value, into.data() + into.size() - sizeof(U));
 }
 
 /// Takes unsigned integers off the front. After the first that is not there, all are 0 and

@@ -1,5 +1,6 @@
 #include "scene_generated.h"
 #include "scenes/catalogue.hpp"
+#include "scenes/zero_signs.hpp"
 
 namespace cycloid::scenes {
 
@@ -27,9 +28,13 @@ class BinaryReader {
   void read_all(const flatbuffers::Vector<flatbuffers::Offset<Table>>* from,
                 std::vector<Part>& to) {
     if (from == nullptr) return;
+    // Its offset, and the one to its vtable, which every table has and may not share.
+    constexpr std::size_t kTableBytesMin = sizeof(flatbuffers::uoffset_t) * 2;
+    if (!spend(kTableBytesMin * from->size())) return;
+    to.reserve(from->size());
     for (const Table* table : *from) {
-      if (!spend(sizeof(flatbuffers::uoffset_t))) return;
       read(*table, to.emplace_back());
+      if (overdrawn_) return;
     }
   }
 
@@ -43,8 +48,10 @@ class BinaryReader {
 
   void read(const fb::Shape& from, SceneShape& to) {
     to.kind = static_cast<solver::ShapeKind>(from.kind());
-    if (from.points() != nullptr && spend(from.points()->size() * sizeof(fb::Triple)))
+    if (from.points() != nullptr && spend(from.points()->size() * sizeof(fb::Triple))) {
+      to.points.reserve(from.points()->size());
       for (const fb::Triple* point : *from.points()) to.points.push_back(triple(point));
+    }
     to.radius = from.radius();
     to.normal = triple(from.normal());
     to.offset = from.offset();
@@ -52,9 +59,11 @@ class BinaryReader {
     to.half = triple(from.half());
     // A file from before boxes has none: not turned, as in scene.hpp.
     if (from.rotation() != nullptr) to.rotation = quadruple(from.rotation());
-    if (from.triangles() != nullptr && spend(from.triangles()->size() * sizeof(fb::Corners)))
+    if (from.triangles() != nullptr && spend(from.triangles()->size() * sizeof(fb::Corners))) {
+      to.triangles.reserve(from.triangles()->size());
       for (const fb::Corners* corners : *from.triangles())
         to.triangles.push_back({corners->a(), corners->b(), corners->c()});
+    }
     if (from.heights() != nullptr && spend(from.heights()->size() * sizeof(float)))
       to.heights.assign(from.heights()->begin(), from.heights()->end());
     to.columns = from.columns();
@@ -269,6 +278,7 @@ Loaded from_binary(std::span<const std::byte> bytes) {
   Scene scene;
   BinaryReader reader(bytes.size());
   reader.read(*fb::GetScene(data), scene);
+  drop_zero_signs(scene);
   if (reader.overdrawn()) return refuse("is a damaged binary scene: parts of it overlap");
   loaded.mistakes = check(scene);
   if (loaded.mistakes.empty()) loaded.scene = std::move(scene);

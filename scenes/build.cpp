@@ -50,18 +50,24 @@ class Builder {
 
   std::unique_ptr<Built<D>> build() {
     const std::size_t before = mistakes_.size();
+    // The first of a name counts.
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
+      materials_.emplace(scene_.materials[i].name, static_cast<std::uint32_t>(i));
     solver::Result<solver::World<D>> world = solver::World<D>::create(world_def());
     if (!world.ok()) {
       complain(world_path(world.error()), world.error());
       return nullptr;
     }
     built_ = std::make_unique<Built<D>>(Built<D>{std::move(world.value()), {}, {}, {}, 0});
-    for (std::size_t i = 0; i < scene_.bodies.size(); ++i) add_body(i);
-    for (std::size_t i = 0; i < scene_.joints.size(); ++i) add_joint(i);
-    for (std::size_t i = 0; i < scene_.cloths.size(); ++i) add_cloth(i);
-    for (std::size_t i = 0; i < scene_.prefabs.size(); ++i) add_prefab(i);
-    for (std::size_t i = 0; i < scene_.characters.size(); ++i) add_character(i);
-    for (std::size_t i = 0; i < scene_.seats.size(); ++i) add_seat(i);
+    const auto go_on = [&](std::size_t i, const auto& parts) {
+      return i < parts.size() && mistakes_.size() < kMistakesMax;
+    };
+    for (std::size_t i = 0; go_on(i, scene_.bodies); ++i) add_body(i);
+    for (std::size_t i = 0; go_on(i, scene_.joints); ++i) add_joint(i);
+    for (std::size_t i = 0; go_on(i, scene_.cloths); ++i) add_cloth(i);
+    for (std::size_t i = 0; go_on(i, scene_.prefabs); ++i) add_prefab(i);
+    for (std::size_t i = 0; go_on(i, scene_.characters); ++i) add_character(i);
+    for (std::size_t i = 0; go_on(i, scene_.seats); ++i) add_seat(i);
     add_registers();
     return mistakes_.size() == before ? std::move(built_) : nullptr;
   }
@@ -94,12 +100,13 @@ class Builder {
     if (field == "gravity" || field == "materials") return "/" + field;
     if (field == "tick_s") return "/tick_hz";
     if (field.starts_with("limits.")) return "/limits/" + field.substr(7);
+    if (field.starts_with("floating_point_")) return field;  // Of the process, not of the scene.
     return "/tuning/" + field;
   }
 
   std::uint32_t material_index(const std::string& name) const {
-    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
-      if (scene_.materials[i].name == name) return static_cast<std::uint32_t>(i);
+    const auto found = materials_.find(name);
+    if (found != materials_.end()) return found->second;
     return name.empty() ? 0 : solver::kNone;
   }
 
@@ -287,6 +294,10 @@ class Builder {
       registers_ += kCharacterRegisters<D>;
     }
     built_->register_count = registers_;
+    // A control is a few bytes and asks for hundreds of registers.
+    constexpr std::uint32_t kRegistersMax = 1u << 20;
+    if (registers_ > kRegistersMax)
+      return complain("/seats", "ask for more than 1048576 registers");
     const Error error = built_->world.resize_registers(registers_);
     if (!error.ok()) return complain("/limits/registers", error);
     start_characters(*built_);
@@ -357,6 +368,7 @@ class Builder {
   const Scene& scene_;
   std::vector<Mistake>& mistakes_;
   std::unique_ptr<Built<D>> built_;
+  std::map<std::string, std::uint32_t> materials_;
   std::map<std::string, solver::BodyId> bodies_;
   std::map<std::string, std::pair<solver::JointId, std::size_t>> joints_;
   solver::BodyId anchor_body_;

@@ -14,11 +14,14 @@ struct Mistake {
   std::string reason;  ///< A sentence.
 };
 
-/// A scene, or all of its mistakes (at least one).
+/// A scene, or its mistakes (at least one): all of them, up to about kMistakesMax.
 struct Loaded {
   std::optional<Scene> scene;
   std::vector<Mistake> mistakes;
 };
+
+/// So many mistakes end the search for more: a hostile file is nothing else.
+inline constexpr std::size_t kMistakesMax = 1000;
 
 struct CatalogueEntry {
   std::string name;        ///< "half-pipe"

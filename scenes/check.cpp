@@ -60,9 +60,10 @@ std::vector<Mistake> check(const Scene& scene) {
   if (scene.seats.size() > kSeatsMax) mistakes.push_back({"/seats", "are 256 at most"});
   for (std::size_t s = 0; s < scene.seats.size(); ++s) {
     const std::string path = "/seats/" + std::to_string(s);
-    for (std::size_t c = 0; c < scene.seats[s].controls.size(); ++c)
+    for (std::size_t c = 0; c < scene.seats[s].controls.size() && mistakes.size() < kMistakesMax;
+         ++c)
       check_control(scene.seats[s].controls[c], path + "/controls/" + std::to_string(c), mistakes);
-    for (std::size_t e = 0; e < scene.seats[s].script.size(); ++e)
+    for (std::size_t e = 0; e < scene.seats[s].script.size() && mistakes.size() < kMistakesMax; ++e)
       check_script(scene.seats[s].script[e], path + "/script/" + std::to_string(e), mistakes);
   }
   if (scene.dimension == 2)

@@ -6,6 +6,7 @@
 
 #include "scenes/catalogue.hpp"
 #include "scenes/fields.hpp"
+#include "scenes/zero_signs.hpp"
 
 namespace cycloid::scenes {
 
@@ -57,6 +58,10 @@ class JsonReader {
   }
 
   void complain_unknown(const std::string& key) {
+    // The names of fields are short; comparing one of megabytes with all takes minutes.
+    constexpr std::size_t kKeyBytesMax = 64;
+    if (key.size() > kKeyBytesMax || mistakes_.size() >= kMistakesMax)
+      return complain(path_ + "/" + key.substr(0, kKeyBytesMax), "is not a field here");
     const auto nearest =
         std::min_element(known_.begin(), known_.end(), [&](const auto& a, const auto& b) {
           return edit_distance(key, a) < edit_distance(key, b);
@@ -134,9 +139,9 @@ class JsonReader {
   template <class Element>
   void read(const Json& json, const std::string& path, std::vector<Element>& field) {
     if (!json.is_array()) return complain(path, "has to be an array");
-    field.assign(json.size(), Element{});
-    for (std::size_t i = 0; i < json.size(); ++i)
-      read(json[i], path + "/" + std::to_string(i), field[i]);
+    field.clear();
+    for (std::size_t i = 0; i < json.size() && mistakes_.size() < kMistakesMax; ++i)
+      read(json[i], path + "/" + std::to_string(i), field.emplace_back());
   }
 
   template <HasFields Part>
@@ -166,7 +171,7 @@ class ParseGuard {
     if (event == Json::parse_event_t::object_end) keys_.pop_back();
     if (event == Json::parse_event_t::key) {
       const std::string key = parsed.get<std::string>();
-      if (!keys_.back().insert(key).second)
+      if (!keys_.back().insert(key).second && mistakes_.size() < kMistakesMax)
         mistakes_.push_back({"/" + key, "is given twice in one object"});
     }
     return true;
@@ -198,6 +203,7 @@ Loaded from_json(std::string_view text) {
   Scene scene;
   JsonReader reader(json, "", loaded.mistakes);
   reader.read_part(scene);
+  drop_zero_signs(scene);
   if (loaded.mistakes.empty()) loaded.mistakes = check(scene);
   if (loaded.mistakes.empty()) loaded.scene = std::move(scene);
   return loaded;

@@ -14,7 +14,7 @@ using Json = nlohmann::ordered_json;
 /// The double that is written as the shortest decimal which reads back as this float.
 static double shortest(float value) {
   char text[32];
-  char* end = std::to_chars(text, text + sizeof text, value).ptr;
+  char* const end = std::to_chars(text, text + sizeof text, value).ptr;
   // A stream, because libc++ 19 has no from_chars of a double, and strtod follows the locale.
   std::istringstream stream(std::string(text, end));
   stream.imbue(std::locale::classic());

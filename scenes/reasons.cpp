@@ -12,6 +12,11 @@ std::string reason_of(const solver::Error& error) {
       break;
   }
   const std::string_view field = error.field;
+  if (field == "floating_point_mode")
+    return "is not IEEE: this thread rounds other than to nearest, or flushes subnormal numbers; a "
+           "library that was linked with -ffast-math does that when it is loaded";
+  if (field == "floating_point_flags")
+    return "fuse or reorder operations: build with -ffp-contract=off and without -ffast-math";
   if (field == "points")
     return "has to be a convex outline without repeated points, in the right number";
   if (field == "radius") return "has to be positive and finite";

@@ -5,6 +5,7 @@
 #include "scenes/build.hpp"
 #include "scenes/characters.hpp"
 #include "scenes/controls.hpp"
+#include "solver/floating_point_mode.hpp"
 
 namespace cycloid::scenes {
 
@@ -34,6 +35,8 @@ Simulation& Simulation::operator=(Simulation&&) noexcept = default;
 Simulation::~Simulation() = default;
 
 solver::Result<Simulation> Simulation::create(const Scene& scene) {
+  if (const auto error = solver::check_arithmetic(solver::rounds_as_written()); !error.ok())
+    return error;
   std::vector<Mistake> mistakes;
   auto running = std::make_unique<Running>();
   bool good = false;
@@ -76,10 +79,25 @@ solver::Error Simulation::set_lanes(int lanes) {
 
 solver::Error Simulation::step(std::span<const SeatInput> inputs) {
   if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
+  // Before the controls, which compute too.
+  if (!solver::floating_point_mode_is_ieee())
+    return {solver::Code::kInvalid, "floating_point_mode"};
   return running_->visit([&](auto& built) {
     if (!built.world.fault()) apply_controls(built, inputs);
     return built.world.step();
   });
+}
+
+solver::Error Simulation::step_traced(std::span<const SeatInput> inputs, solver::StepTrace& trace) {
+  if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
+  return running_->visit([&](auto& built) {
+    if (!built.world.fault()) apply_controls(built, inputs);
+    return built.world.step_traced(trace);
+  });
+}
+
+void Simulation::trace_state(solver::StepTrace& trace) const {
+  running_->visit([&](const auto& built) { built.world.trace_state(trace); });
 }
 
 std::uint64_t Simulation::digest() const {

@@ -65,6 +65,10 @@ class Simulation {
   /// Applies the controls of every seat, in seat order, then steps once.
   /// @pre inputs.size() == seats(); otherwise kInvalid "inputs" and nothing has changed.
   solver::Error step(std::span<const SeatInput> inputs);
+  /// `step`, with what every phase has left; see solver/trace.hpp. Changes no bit.
+  solver::Error step_traced(std::span<const SeatInput> inputs, solver::StepTrace& trace);
+  /// Adds the state as it is now to the phases of the trace.
+  void trace_state(solver::StepTrace& trace) const;
 
   std::uint64_t digest() const;
   std::optional<solver::Fault> fault() const;

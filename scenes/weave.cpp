@@ -1,5 +1,7 @@
 #include "scenes/weave.hpp"
 
+#include <algorithm>
+
 namespace cycloid::scenes {
 
 template <int D>
@@ -58,8 +60,11 @@ template <int D>
 std::string weave_cloth(const Cloth& cloth, std::uint32_t material, solver::World<D>& world,
                         Weave& weave) {
   const solver::Limits& limits = world.state().header.limits;
-  if (cloth.columns < 1 || cloth.columns > limits.particles) return "columns";
-  if (cloth.rows < 1 || cloth.rows > limits.particles / cloth.columns) return "rows";
+  const std::size_t live = world.state().particles.size();
+  if (live > limits.particles || live > kClothParticlesMax) return "columns";
+  const auto room = std::min<std::size_t>(limits.particles, kClothParticlesMax) - live;
+  if (cloth.columns < 1 || cloth.columns > room) return "columns";
+  if (cloth.rows < 1 || cloth.rows > room / cloth.columns) return "rows";
   for (std::uint32_t row = 0; row < cloth.rows; ++row)
     for (std::uint32_t column = 0; column < cloth.columns; ++column) {
       solver::ParticleDef<D> def;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <string>
 #include <vector>
 
@@ -7,6 +8,10 @@
 #include "solver/world.hpp"
 
 namespace cycloid::scenes {
+
+/// Most particles of all cloths of a scene together: a cloth is a few numbers, which would
+/// otherwise ask for any amount of memory.
+inline constexpr std::uint32_t kClothParticlesMax = 1u << 16;
 
 /// The particles of a cloth in a world, row after row.
 using Weave = std::vector<solver::ParticleId>;

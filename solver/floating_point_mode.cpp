@@ -1,21 +1,6 @@
 #include "solver/floating_point_mode.hpp"
 
-#include <cfloat>
-
-#if defined(__FAST_MATH__)
-#error "Cycloid cannot be built with -ffast-math: equal inputs would not give equal bits."
-#endif
-#if FLT_EVAL_METHOD != 0
-#error "Cycloid needs float arithmetic in float: on 32-bit x86 build with -msse2 -mfpmath=sse."
-#endif
-
 namespace cycloid::solver {
-
-/// Hides a value from the optimiser, so that the arithmetic below is done by the processor now.
-static float opaque(float value) {
-  asm("" : "+m"(value));
-  return value;
-}
 
 bool floating_point_mode_is_ieee() {
   const float one = opaque(1.0f);
@@ -27,6 +12,13 @@ bool floating_point_mode_is_ieee() {
   const bool keeps_subnormals = opaque(opaque(0x1p-126f) * opaque(0.25f)) != 0.0f;
   const bool reads_subnormals = opaque(opaque(0x1p-140f) * opaque(0x1p20f)) != 0.0f;
   return not_up && not_down && not_to_zero && keeps_subnormals && reads_subnormals;
+}
+
+Error check_arithmetic(bool caller_rounds_as_written) {
+  if (!floating_point_mode_is_ieee()) return {Code::kInvalid, "floating_point_mode"};
+  if (!caller_rounds_as_written || !rounds_as_written())
+    return {Code::kInvalid, "floating_point_flags"};
+  return {};
 }
 
 }  // namespace cycloid::solver

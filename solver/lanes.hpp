@@ -2,6 +2,8 @@
 
 #include <cstring>
 
+#include "solver/arithmetic.hpp"
+
 namespace cycloid::solver {
 
 /// The vector of W floats and of W masks. One explicit row per width, because GCC 12 can neither

@@ -29,7 +29,7 @@ enum FaultField : std::uint64_t {
   kFaultRotation,
   kFaultVelocity,
   kFaultSpin,
-  kFaultContacts,  ///< More contacts than `limits.contacts`.
+  kFaultContacts,  ///< More contacts than `limits.contacts`, or far more pairs.
   kFaultParticle,  ///< A particle would leave the finite, bounded range.
 };
 

@@ -1,6 +1,8 @@
 #include "solver/constraints/contact_rolling.hpp"
 #include "solver/events.hpp"
+#include "solver/floating_point_mode.hpp"
 #include "solver/stages/stages.hpp"
+#include "solver/tracing/tracer.hpp"
 #include "solver/validate.hpp"
 #include "solver/world.hpp"
 
@@ -19,46 +21,78 @@ static void evaluate(const StepContext<D>& context, const WorldState<D>& state, 
 /// about the errors that are left. @pre rows are those of the present poses; so they are after it.
 template <int D, int W>
 static void solve_substep(const StepContext<D>& context, const WorldState<D>& state, float time_s,
-                          Workers& workers, StepScratch<D>& scratch) {
+                          const Tracer<D>& traced, Workers& workers, StepScratch<D>& scratch) {
   const Tuning& tuning = context.tuning;
   integrate_velocities(context, state, workers, scratch);
+  traced(Phase::kVelocities);
   bounce_contacts<D, W>(context, workers, scratch);
+  traced(Phase::kBounce);
   warm_start_constraints<D, W>(workers, scratch);
-  for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep)
+  traced(Phase::kWarmStart);
+  for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep) {
     solve_constraints<D, W>(context, Sweep::kBiased, workers, scratch);
-  if (tuning.stabilisation == Stabilisation::kSplitImpulse)
+    traced(Phase::kSweep, sweep);
+  }
+  if (tuning.stabilisation == Stabilisation::kSplitImpulse) {
     solve_pseudo_velocities<D, W>(context, workers, scratch);
+    traced(Phase::kPseudo);
+  }
   integrate_positions(context, state, workers, scratch);
-  if (tuning.stabilisation == Stabilisation::kNgs)
-    for (std::uint32_t sweep = 0; sweep < tuning.position_sweeps; ++sweep)
+  traced(Phase::kPositions);
+  if (tuning.stabilisation == Stabilisation::kNgs) {
+    for (std::uint32_t sweep = 0; sweep < tuning.position_sweeps; ++sweep) {
       correct_positions<D, W>(context, state, time_s, workers, scratch);
+      traced(Phase::kCorrect, sweep);
+    }
+  }
   evaluate<D, W>(context, state, time_s, workers, scratch);
-  for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep)
+  traced(Phase::kEvaluate);
+  for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep) {
     solve_constraints<D, W>(context, Sweep::kRelax, workers, scratch);
+    traced(Phase::kRelax, sweep);
+  }
+}
+
+template <int D, int W>
+static void solve_substeps(const StepContext<D>& context, const WorldState<D>& state,
+                           Tracer<D> traced, Workers& workers, StepScratch<D>& scratch) {
+  // Signed, because 32-bit x86 turns large unsigned numbers into floats by x87 additions.
+  const auto tick = static_cast<std::int64_t>(state.header.tick);
+  const float start_s = static_cast<float>(tick) * context.tick_s;
+  if (context.tuning.stabilisation != Stabilisation::kXpbd) {
+    evaluate<D, W>(context, state, start_s, workers, scratch);
+    traced(Phase::kEvaluate);
+  }
+  for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
+    const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
+    traced.substep = substep;
+    if (context.tuning.stabilisation == Stabilisation::kXpbd) {
+      project_positions<D, W>(context, state, time_s, workers, scratch);
+      traced(Phase::kProject);
+    } else {
+      solve_substep<D, W>(context, state, time_s, traced, workers, scratch);
+    }
+  }
 }
 
 /// A tick, read aloud. The only place that knows the order of the stages.
 template <int D, int W>
 static void solve_tick(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                        StepScratch<D>& scratch) {
+  const Tracer<D> traced{state, scratch, &read_blocks<D, W>};
   wake_islands(context, state, scratch);
+  traced(Phase::kIslands);
   color(state, scratch);
+  traced(Phase::kColors);
   prepare_bodies(state, workers, scratch);
   prepare_joints(context, state, scratch);
   prepare_contacts<D, W>(context, state, workers, scratch);
-
-  const float start_s = static_cast<float>(state.header.tick) * context.tick_s;
-  if (context.tuning.stabilisation != Stabilisation::kXpbd)
-    evaluate<D, W>(context, state, start_s, workers, scratch);
-  for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
-    const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
-    if (context.tuning.stabilisation == Stabilisation::kXpbd)
-      project_positions<D, W>(context, state, time_s, workers, scratch);
-    else
-      solve_substep<D, W>(context, state, time_s, workers, scratch);
-  }
+  traced(Phase::kPrepare);
+  solve_substeps<D, W>(context, state, traced, workers, scratch);
   store_impulses<D, W>(workers, scratch);
+  traced(Phase::kStore);
   stop_fast_bodies(context, state, workers, scratch);
+  traced(Phase::kStop);
 }
 
 template <int D>
@@ -144,6 +178,7 @@ static bool particles_moved(const StepContext<D>& context, StepScratch<D>& scrat
 template <int D>
 Error World<D>::step() {
   if (state_.header.fault.field != kFaultNone) return {Code::kFaulted, "step"};
+  if (!floating_point_mode_is_ieee()) return {Code::kInvalid, "floating_point_mode"};
   for (const Joint<D>& joint : state_.joints)
     if (joint.kind == JointKind::kUser &&
         find_rows_function<D>(scratch_->user_rows, joint.user_kind) == nullptr)
@@ -151,9 +186,13 @@ Error World<D>::step() {
   const StepContext<D> context =
       make_step_context(state_.header.tick_s, state_.header.gravity, state_.header.tuning);
   StepScratch<D>& scratch = *scratch_;
-  find_pairs(context, state_, *workers_, scratch);
-  collide_pairs(context, state_, *workers_, scratch);
-  if (scratch.contacts.size() > state_.header.limits.contacts) {
+  const Tracer<D> traced{state_, scratch};
+  traced(Phase::kForces);
+  const bool paired = find_pairs(context, state_, *workers_, scratch);
+  traced(Phase::kPairs);
+  if (paired) collide_pairs(context, state_, *workers_, scratch);
+  traced(Phase::kCollide);
+  if (!paired || scratch.contacts.size() > state_.header.limits.contacts) {
     state_.header.fault = {state_.header.tick + 1, {kNone, 0}, kFaultContacts};
     return {Code::kFaulted, "limits.contacts"};
   }
@@ -167,12 +206,15 @@ Error World<D>::step() {
   append_contact_events(state_, scratch.contacts, events_);
   if (!state_.particles.empty()) scratch.before = state_;
   finalize(scratch, state_);
+  traced(Phase::kFinalize);
   rest_islands(context, scratch, state_);
+  traced(Phase::kRest);
   if (!state_.particles.empty() && !particles_moved(context, scratch, state_)) {
     state_ = scratch.before;
     state_.header.fault = {state_.header.tick + 1, {kNone, 0}, kFaultParticle};
     return {Code::kFaulted, "particle"};
   }
+  if (!state_.particles.empty()) traced(Phase::kParticles);
   statistics_ = statistics_of(state_, scratch);
   return {};
 }

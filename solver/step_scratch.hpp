@@ -16,6 +16,8 @@
 
 namespace cycloid::solver {
 
+struct StepTrace;
+
 /// Two shapes whose boxes overlap, lower slot first.
 struct ShapePair {
   std::uint32_t shape_a;
@@ -102,7 +104,8 @@ struct StepScratch {
   WorldState<D> before;                ///< Of worlds with particles, to undo a tick that faults.
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>
-      contact_blocks;  ///< Only that of the chosen width is filled.
+      contact_blocks;          ///< Only that of the chosen width is filled.
+  StepTrace* trace = nullptr;  ///< Of World::step_traced, while it runs.
 };
 
 }  // namespace cycloid::solver

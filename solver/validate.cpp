@@ -11,6 +11,8 @@ Error validate(const Tuning& t) {
   if (t.sweeps < 1 || t.sweeps > 1000) return invalid("sweeps");
   if (t.relax_sweeps > 1000) return invalid("relax_sweeps");
   if (t.position_sweeps > 1000) return invalid("position_sweeps");
+  if (t.substeps * (t.sweeps + t.relax_sweeps + t.position_sweeps) > kSweepsMax)
+    return invalid("substeps");
   if (t.stabilisation > Stabilisation::kXpbd) return invalid("stabilisation");
   if (t.order > Order::kReverse) return invalid("order");
   if (t.contact_block > ContactBlockRows::kNormalFriction) return invalid("contact_block");
@@ -23,6 +25,7 @@ Error validate(const Tuning& t) {
   if (t.continuous > 1) return invalid("continuous");
   if (t.particle_substeps < 1 || t.particle_substeps > 256) return invalid("particle_substeps");
   if (t.particle_sweeps < 1 || t.particle_sweeps > 1000) return invalid("particle_sweeps");
+  if (t.particle_substeps * t.particle_sweeps > kSweepsMax) return invalid("particle_substeps");
   if (!within(t.particle_damping, 0.0f, 1.0e4f)) return invalid("particle_damping");
   if (!within(t.baumgarte, 0.0f, 2.0f)) return invalid("baumgarte");
   if (!within(t.slop, 0.0f, 1.0f)) return invalid("slop");
@@ -110,9 +113,18 @@ static bool has_dimension(ShapeKind kind, int spin) {
   }
 }
 
-static bool is_of_static_bodies(ShapeKind kind) {
-  return kind == ShapeKind::kHalfSpace || kind == ShapeKind::kChain || kind == ShapeKind::kMesh ||
-         kind == ShapeKind::kHeightField;
+bool is_of_static_bodies(ShapeKind kind) {
+  switch (kind) {
+    case ShapeKind::kHalfSpace:
+    case ShapeKind::kSegment:
+    case ShapeKind::kChain:
+    case ShapeKind::kTriangle:
+    case ShapeKind::kMesh:
+    case ShapeKind::kHeightField:
+      return true;
+    default:
+      return false;
+  }
 }
 
 template <int D>

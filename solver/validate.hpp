@@ -17,6 +17,9 @@ inline constexpr float kMassMin = 1.0e-9f;     ///< kg
 inline constexpr float kSizeMin = 1.0e-4f;     ///< m: radii and edges
 inline constexpr float kSizeMax = 1.0e6f;      ///< m
 
+/// Sweeps of a tick, of all substeps together: with the limits it bounds what a tick can take.
+inline constexpr std::uint32_t kSweepsMax = 8192;
+
 inline constexpr float kSteeringMax = 1.6f;  ///< rad
 
 /// False for NaN too.
@@ -60,6 +63,13 @@ template <int D>
 Error validate(const ShapeDef<D>& def, BodyKind body, std::size_t materials, int index);
 template <int D>
 Error validate(const JointDef<D>& def);
+
+/// Whether a joint in use has settings that World's calls could have given it, and anchors that a
+/// body could have. @pre joint.kind != kFree.
+template <int D>
+bool is_reachable(const Joint<D>& joint);
+/// Kinds whose solid has no end, or only one side: those of static bodies.
+bool is_of_static_bodies(ShapeKind kind);
 
 /// A whole state that came from outside: every index, list, number and enumerator, so that stepping
 /// it reads and writes nothing out of bounds. kCorrupt with the name of the array.

@@ -90,8 +90,9 @@ static Error validate_geometry(const JointDef<D>& def) {
   if (!within(ratio, 1.0e-3f, 1.0e3f)) return invalid("ratio");
   if (!within(def.ground_a, kPositionMax)) return invalid("ground_a");
   if (!within(def.ground_b, kPositionMax)) return invalid("ground_b");
-  if (def.kind != JointKind::kCurve) return {};
+  // Also of a joint that has no curve: a state keeps it, and no enumerator in it may be unknown.
   if (def.curve > CurveKind::kPolyline) return invalid("curve");
+  if (def.kind != JointKind::kCurve) return {};
   if (def.curve == CurveKind::kPolyline) return {};
   const bool two = def.curve == CurveKind::kEllipse;
   if (!within(def.size[0], kSizeMin, kSizeMax)) return invalid("size");
@@ -134,6 +135,66 @@ Error validate(const JointDef<D>& def) {
   return validate_drives(def);
 }
 
+/// The settings of a joint as its definition had them, but for its bodies and anchors.
+template <int D>
+static JointDef<D> settings_of(const Joint<D>& joint) {
+  JointDef<D> def;
+  def.kind = joint.kind;
+  def.body_a.index = joint.body_a;
+  def.body_b.index = joint.body_b;
+  def.axis = joint.axis;
+  def.axle = joint.axle;
+  def.steering = joint.steering;
+  def.cone = joint.cone;
+  def.length = joint.length;
+  def.ratio = joint.ratio;
+  def.hertz = joint.hertz;
+  def.damping_ratio = joint.damping_ratio;
+  def.angular_hertz = joint.angular_hertz;
+  def.angular_damping_ratio = joint.angular_damping_ratio;
+  def.limit_enabled = joint.limit_enabled != 0;
+  def.lower = joint.lower;
+  def.upper = joint.upper;
+  def.motor = joint.motor;
+  def.motor_speed = joint.motor_speed;
+  def.motor_max = joint.motor_max;
+  def.target = joint.target;
+  def.drive_amplitude = joint.drive_amplitude;
+  def.drive_hertz = joint.drive_hertz;
+  def.force_max = joint.force_max;
+  def.torque_max = joint.torque_max;
+  def.ground_a = joint.ground_a;
+  def.ground_b = joint.ground_b;
+  def.curve = joint.curve;
+  def.size = joint.size;
+  def.user_kind = joint.user_kind;
+  def.parameters = joint.parameters;
+  return def;
+}
+
+template <int D>
+bool is_reachable(const Joint<D>& joint) {
+  if (joint.limit_enabled > 1 || joint.collide_connected > 1) return false;
+  // From the centres of mass, which lie within the bodies.
+  if (!within(joint.anchor_a, 4.0f * kSizeMax) || !within(joint.anchor_b, 4.0f * kSizeMax))
+    return false;
+  JointDef<D> def = settings_of(joint);
+  // What the world measured itself, at the joint's creation or for a rope whose limits are now off.
+  constexpr float kMeasuredMax = 1.0e12f;
+  if (joint.kind == JointKind::kGear) {
+    if (!within(def.target, -kMeasuredMax, kMeasuredMax)) return false;
+    def.target = 0.0f;
+  }
+  if (joint.kind == JointKind::kPulley) {
+    if (!within(def.length, 0.0f, kMeasuredMax)) return false;
+    def.length = 0.0f;
+  }
+  if (joint.kind == JointKind::kDistance && def.length == 0.0f) def.length = kSizeMin;
+  return validate(def).ok();
+}
+
+template bool is_reachable(const Joint<2>&);
+template bool is_reachable(const Joint<3>&);
 template Error validate(const JointDef<2>&);
 template Error validate(const JointDef<3>&);
 

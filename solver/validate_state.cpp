@@ -1,5 +1,5 @@
+#include "solver/bytes.hpp"
 #include "solver/solids/validate_polyhedra.hpp"
-#include "solver/trig.hpp"
 #include "solver/validate.hpp"
 #include "solver/visit.hpp"
 
@@ -34,29 +34,77 @@ static bool is_free_list(const std::vector<std::uint32_t>& list, const std::vect
   return true;
 }
 
+/// Whether a slot that is free holds its generation and nothing else.
+template <class R>
+static bool is_blank(const R& record) {
+  bool blank = true;
+  R empty{};
+  if constexpr (requires { record.generation; }) empty.generation = record.generation;
+  std::vector<std::uint64_t> words;
+  visit_words(empty, [&](const auto& value) { words.push_back(bits_of(value)); });
+  std::size_t at = 0;
+  visit_words(record, [&](const auto& value) { blank = blank && bits_of(value) == words[at++]; });
+  return blank;
+}
+
+/// Whether World's calls and steps could have made these numbers of a body in use.
+template <int D>
+static bool is_reachable(const Body<D>& body) {
+  const bool moves = body.kind == BodyKind::kDynamic || body.kind == BodyKind::kParticle;
+  const bool weighs =
+      moves ? within(body.mass, kMassMin, kMassMax) && body.inverse_mass == 1.0f / body.mass
+            : body.mass == 0.0f && body.inverse_mass == 0.0f;
+  if (!weighs || !within(body.position, kPositionMax)) return false;
+  if (!within(dot(body.rotation, body.rotation), 0.99f, 1.01f)) return false;
+  if (!within(body.velocity, kSpeedMax) || !within(body.spin, kSpinMax)) return false;
+  if (!within(body.force, kForceMax) || !within(body.torque, kForceMax)) return false;
+  if (!within(body.linear_damping, 0.0f, 1.0e4f) || !within(body.angular_damping, 0.0f, 1.0e4f))
+    return false;
+  if (!within(body.gravity_scale, -1.0e3f, 1.0e3f)) return false;
+  if (!within(body.extent, 0.0f, 1.0e2f * kSizeMax)) return false;
+  if (!within(body.thickness, 0.0f, 1.0e2f * kSizeMax)) return false;
+  return body.asleep <= 1 && body.fixed_rotation <= 1 && within(body.local_center, 4.0f * kSizeMax);
+}
+
 template <int D>
 static Error validate_bodies(const WorldState<D>& state) {
   std::vector<bool> owned(state.shapes.size(), false);
   for (std::size_t i = 0; i < state.bodies.size(); ++i) {
     const Body<D>& body = state.bodies[i];
     if (body.kind > BodyKind::kParticle || !is_finite(body)) return corrupt("body", i);
-    if (!within(body.position, kPositionMax)) return corrupt("body", i);
-    const bool moves = body.kind == BodyKind::kDynamic || body.kind == BodyKind::kParticle;
-    if (moves != (body.inverse_mass > 0.0f)) return corrupt("body", i);
-    if (body.asleep > 1) return corrupt("body", i);
-    if (body.kind == BodyKind::kFree) continue;
-    if (!within(dot(body.rotation, body.rotation), 0.99f, 1.01f)) return corrupt("body", i);
+    const bool free = body.kind == BodyKind::kFree;
+    if (free ? !is_blank(body) : !is_reachable(body)) return corrupt("body", i);
+    if (free) continue;
     for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
       // `owned` also ends a list that runs in a circle.
       if (s >= state.shapes.size() || owned[s]) return corrupt("body", i);
-      if (state.shapes[s].kind == ShapeKind::kFree || state.shapes[s].body != i)
-        return corrupt("body", i);
+      const ShapeKind kind = state.shapes[s].kind;
+      if (kind == ShapeKind::kFree || state.shapes[s].body != i) return corrupt("body", i);
+      if (is_of_static_bodies(kind) && body.kind != BodyKind::kStatic) return corrupt("body", i);
       owned[s] = true;
     }
   }
   for (std::size_t i = 0; i < state.shapes.size(); ++i)
     if (owned[i] != (state.shapes[i].kind != ShapeKind::kFree)) return corrupt("shape", i);
   return {};
+}
+
+static bool has_unit_normals(const Shape<2>& shape) {
+  for (std::size_t i = 0; i < shape.vertex_count; ++i)
+    if (!within(dot(shape.normals[i], shape.normals[i]), 0.99f, 1.01f)) return false;
+  return true;
+}
+
+/// Corners, radius and plane within what a definition may say, shifted to a centre of mass.
+template <int D>
+static bool is_sized(const Shape<D>& shape) {
+  for (const Vec<D>& vertex : shape.vertices)
+    if (!within(vertex, 8.0f * kSizeMax)) return false;
+  const bool round = shape.kind == ShapeKind::kBall || shape.kind == ShapeKind::kCapsule;
+  if (!within(shape.radius, round ? kSizeMin : 0.0f, kSizeMax)) return false;
+  const bool plane = shape.kind == ShapeKind::kHalfSpace;
+  if (plane && !within(dot(shape.normal, shape.normal), 0.99f, 1.01f)) return false;
+  return within(shape.offset, -8.0f * kSizeMax, 8.0f * kSizeMax);
 }
 
 static bool outline_fits(const WorldState<2>&, const Shape<2>& shape) {
@@ -69,10 +117,11 @@ static bool outline_fits(const WorldState<2>&, const Shape<2>& shape) {
     case ShapeKind::kHalfSpace:
       return n == 0;
     case ShapeKind::kCapsule:
-    case ShapeKind::kSegment:
       return n == 2;
+    case ShapeKind::kSegment:
+      return n == 2 && shape.ghosts < 4;
     case ShapeKind::kPolygon:
-      return n >= 3 && n <= shape.vertices.size();
+      return n >= 3 && n <= shape.vertices.size() && has_unit_normals(shape);
     default:
       return false;
   }
@@ -113,21 +162,13 @@ static Error validate_shapes(const WorldState<D>& state) {
   for (std::size_t i = 0; i < state.shapes.size(); ++i) {
     const Shape<D>& shape = state.shapes[i];
     if (!is_finite(shape) || !outline_fits(state, shape)) return corrupt("shape", i);
-    if (shape.kind != ShapeKind::kFree && shape.material >= state.materials.size())
-      return corrupt("shape", i);
+    if (shape.kind == ShapeKind::kFree) {
+      if (!is_blank(shape)) return corrupt("shape", i);
+      continue;
+    }
+    if (!is_sized(shape) || shape.material >= state.materials.size()) return corrupt("shape", i);
   }
   return {};
-}
-
-/// What the rows of rotation and sliding rely on: directions of length 1, angles in range.
-template <int D>
-static bool turns_fit(const Joint<D>& joint) {
-  const float most = Dim<D>::kSpin == 1 ? 0.0f : kSteeringMax;
-  if (!exists(joint.kind, Dim<D>::kSpin)) return false;
-  if (!within(dot(joint.reference, joint.reference), 0.99f, 1.01f)) return false;
-  if (needs_axis(joint.kind) && !is_unit(joint.axis)) return false;
-  if (joint.kind == JointKind::kWheel && !fits_wheel(joint.axis, joint.axle)) return false;
-  return within(joint.steering, -most, most) && within(joint.cone, 0.0f, kPi);
 }
 
 template <int D>
@@ -137,15 +178,17 @@ static Error validate_joints(const WorldState<D>& state) {
     if (joint.kind > JointKind::kConeTwist || !is_finite(joint)) return corrupt("joint", i);
     if (joint.motor > MotorKind::kPosition || joint.curve > CurveKind::kPolyline)
       return corrupt("joint", i);
-    if (joint.kind == JointKind::kFree) continue;
+    if (joint.kind == JointKind::kFree) {
+      if (!is_blank(joint)) return corrupt("joint", i);
+      continue;
+    }
     for (const std::uint32_t body : {joint.body_a, joint.body_b})
       if (body >= state.bodies.size() || state.bodies[body].kind == BodyKind::kFree)
         return corrupt("joint", i);
-    if (joint.body_a == joint.body_b || !turns_fit(joint)) return corrupt("joint", i);
-    const bool sized = joint.kind == JointKind::kCurve && joint.curve != CurveKind::kPolyline;
-    if (sized && !(joint.size[0] > 0.0f)) return corrupt("joint", i);
-    if (sized && joint.curve == CurveKind::kEllipse && !(joint.size[1] > 0.0f))
-      return corrupt("joint", i);
+    const bool held = state.bodies[joint.body_a].inverse_mass == 0.0f &&
+                      state.bodies[joint.body_b].inverse_mass == 0.0f;
+    const bool turned = within(dot(joint.reference, joint.reference), 0.99f, 1.01f);
+    if (held || !turned || !is_reachable(joint)) return corrupt("joint", i);
   }
   return {};
 }
@@ -175,10 +218,15 @@ static Error validate_particles(const WorldState<D>& state) {
   for (std::size_t i = 0; i < state.particles.size(); ++i) {
     const Particle<D>& particle = state.particles[i];
     if (particle.kind > 1 || !is_finite(particle)) return corrupt("particle", i);
-    if (particle.kind == 0) continue;
-    const bool sized = within(particle.radius, kSizeMin, kSizeMax) && particle.inverse_mass >= 0.0f;
-    if (!sized || !within(particle.position, kPositionMax) ||
-        particle.material >= state.materials.size())
+    if (particle.kind == 0) {
+      if (!is_blank(particle)) return corrupt("particle", i);
+      continue;
+    }
+    const bool sized = within(particle.radius, kSizeMin, kSizeMax);
+    const bool weighs = particle.inverse_mass == 0.0f ||
+                        within(particle.inverse_mass, 0.5f / kMassMax, 2.0f / kMassMin);
+    if (!sized || !weighs || !within(particle.position, kPositionMax) ||
+        !within(particle.velocity, kSpeedMax) || particle.material >= state.materials.size())
       return corrupt("particle", i);
   }
   const auto lives = [&](std::uint32_t slot) {
@@ -187,17 +235,24 @@ static Error validate_particles(const WorldState<D>& state) {
   for (std::size_t i = 0; i < state.links.size(); ++i) {
     const Link& link = state.links[i];
     if (link.kind > 1 || !is_finite(link)) return corrupt("link", i);
-    if (link.kind == 0) continue;
+    if (link.kind == 0) {
+      if (!is_blank(link)) return corrupt("link", i);
+      continue;
+    }
     if (!lives(link.particle_a) || !lives(link.particle_b) || link.particle_a == link.particle_b)
       return corrupt("link", i);
-    if (!(link.length >= 0.0f) || !(link.compliance >= 0.0f)) return corrupt("link", i);
+    if (!within(link.length, 0.0f, kSizeMax) || !within(link.compliance, 0.0f, 1.0e6f))
+      return corrupt("link", i);
   }
   for (std::size_t i = 0; i < state.pins.size(); ++i) {
     const Pin<D>& pin = state.pins[i];
     if (pin.kind > 1 || !is_finite(pin)) return corrupt("pin", i);
-    if (pin.kind == 0) continue;
+    if (pin.kind == 0) {
+      if (!is_blank(pin)) return corrupt("pin", i);
+      continue;
+    }
     if (!lives(pin.particle) || pin.body >= state.bodies.size() ||
-        state.bodies[pin.body].kind == BodyKind::kFree)
+        state.bodies[pin.body].kind == BodyKind::kFree || !within(pin.anchor, 4.0f * kSizeMax))
       return corrupt("pin", i);
   }
   return {};

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <atomic>
+#include <cstdint>
 #include <memory>
 
 namespace cycloid::solver {
@@ -8,6 +10,20 @@ namespace cycloid::solver {
 struct Range {
   int begin = 0;
   int end = 0;
+};
+
+/// A count that all threads add to. Who adds first cannot be seen as long as only this is asked:
+/// whether the sum of all is over a limit, and what follows if it is does not use who was cut
+/// short.
+class Tally {
+ public:
+  explicit Tally(std::uint64_t limit) : limit_(limit) {}
+  void add(std::uint64_t count) { sum_.fetch_add(count, std::memory_order_relaxed); }
+  bool is_over() const { return sum_.load(std::memory_order_relaxed) > limit_; }
+
+ private:
+  std::uint64_t limit_;
+  std::atomic<std::uint64_t> sum_{0};
 };
 
 /// A fixed pool that runs ranges. The only thread-aware code of the solver.

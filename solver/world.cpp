@@ -39,8 +39,8 @@ template <int D>
 World<D>::~World() = default;
 
 template <int D>
-Result<World<D>> World<D>::create(const WorldDef<D>& def) {
-  if (!floating_point_mode_is_ieee()) return Error{Code::kInvalid, "floating_point_mode"};
+Result<World<D>> World<D>::create(const WorldDef<D>& def, bool caller_rounds_as_written) {
+  if (const Error error = check_arithmetic(caller_rounds_as_written); !error.ok()) return error;
   if (const Error error = validate(def); !error.ok()) return error;
   World world;
   world.state_.header.gravity = def.gravity;
@@ -54,6 +54,7 @@ Result<World<D>> World<D>::create(const WorldDef<D>& def) {
 template <int D>
 Error World<D>::set_workers(int workers) {
   if (workers < 1 || workers > 64) return {Code::kInvalid, "workers"};
+  if (!floating_point_mode_is_ieee()) return {Code::kInvalid, "floating_point_mode"};
   workers_ = std::make_unique<Workers>(workers);
   return {};
 }

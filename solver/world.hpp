@@ -8,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "solver/arithmetic.hpp"
 #include "solver/definitions.hpp"
 #include "solver/result.hpp"
 #include "solver/state.hpp"
@@ -17,6 +18,7 @@ namespace cycloid::solver {
 class Workers;
 template <int D>
 struct StepScratch;
+struct StepTrace;
 template <int D>
 struct JointFrame;
 template <int D>
@@ -70,14 +72,19 @@ struct BodyView {
 template <int D>
 class World {
  public:
-  /// Fails with kInvalid or kCapacity on a bad definition, and with field "floating_point_mode"
-  /// where the thread rounds other than to nearest or flushes subnormals.
-  static Result<World> create(const WorldDef<D>& def);
+  /// Fails with kInvalid or kCapacity on a bad definition; with field "floating_point_mode" where
+  /// the thread rounds other than to nearest or flushes subnormals; and with "floating_point_flags"
+  /// where the caller or the solver was compiled with flags that fuse or reorder operations.
+  /// Inlined, so that it is the caller's own flags that are looked at.
+  [[gnu::always_inline]] static Result<World> create(const WorldDef<D>& def) {
+    return create(def, rounds_as_written());
+  }
   World(World&&) noexcept;
   World& operator=(World&&) noexcept;
   ~World();
 
-  /// How many threads take part in a step, this one included: 1 to 64. Changes no bit.
+  /// How many threads take part in a step, this one included: 1 to 64. Changes no bit. New threads
+  /// inherit the mode of this one: kInvalid "floating_point_mode" as for `create`.
   Error set_workers(int workers);
   /// How many contacts one instruction solves: 1, 4, 8 or 16. Changes no bit.
   Error set_lanes(int lanes);
@@ -86,8 +93,14 @@ class World {
   ///
   /// Forces and torques apply for this tick and are cleared. When a value would leave the finite,
   /// bounded range, nothing is committed: the world keeps the state of the tick before, enters the
-  /// fault state (`fault()`), and this and every later step returns kFaulted.
+  /// fault state (`fault()`), and this and every later step returns kFaulted. On a thread that
+  /// rounds otherwise or flushes subnormals: kInvalid "floating_point_mode", and nothing changes.
   Error step();
+  /// `step`, and to `trace.phases` what each phase has left: up to where it failed, if it does.
+  /// Changes no bit of the step. See trace.hpp.
+  Error step_traced(StepTrace& trace);
+  /// Adds the state as it is now, as one phase kState.
+  void trace_state(StepTrace& trace) const;
 
   Result<BodyId> create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> shapes);
   /// Also removes the joints and pins of the body; its contacts end with the next step.
@@ -176,6 +189,7 @@ class World {
 
  private:
   World();
+  static Result<World> create(const WorldDef<D>& def, bool caller_rounds_as_written);
   Error check(BodyId id) const;
   Error check(JointId id) const;
 

@@ -51,6 +51,13 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
   });
 }
 
+/// A row that cannot act keeps the zero it began with, unless another lane makes the block solve
+/// it: then it may become -0. Adding +0 makes the two zeros one, so that lanes do not show in the
+/// sign.
+static float without_sign_of_zero(float impulse) {
+  return impulse + 0.0f;
+}
+
 template <int D, int W>
 static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>& contacts) {
   for (int lane = 0; lane < W; ++lane) {
@@ -58,12 +65,14 @@ static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>
     if (index == kNone) continue;
     Contact<D>& contact = contacts[index];
     for (std::uint32_t p = 0; p < contact.point_count; ++p) {
-      contact.points[p].normal_impulse = block.points[p].normal_impulse.raw[lane];
+      contact.points[p].normal_impulse =
+          without_sign_of_zero(block.points[p].normal_impulse.raw[lane]);
       for (int t = 0; t < Dim<D>::kTangents; ++t)
-        contact.points[p].tangent_impulse[t] = block.points[p].tangent_impulse[t].raw[lane];
+        contact.points[p].tangent_impulse[t] =
+            without_sign_of_zero(block.points[p].tangent_impulse[t].raw[lane]);
     }
     for (int i = 0; i < Dim<D>::kSpin; ++i)
-      contact.rolling_impulse[i] = block.rolling_impulse[i].raw[lane];
+      contact.rolling_impulse[i] = without_sign_of_zero(block.rolling_impulse[i].raw[lane]);
   }
 }
 

@@ -9,7 +9,7 @@ namespace cycloid::solver {
 /// its comment in stages/*.cpp says, and nothing else; docs/architecture.md has the table.
 
 template <int D>
-void find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch);
 template <int D>
 void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,

@@ -17,9 +17,9 @@ namespace {
 
 constexpr std::chrono::seconds kDeadline{60};
 
-pid_t spawn(const std::vector<std::string>& arguments, const std::string& out,
-            const std::string& err) {
-  std::vector<std::string> words = {CYCLOID_PROGRAM};
+pid_t spawn(const std::string& program, const std::vector<std::string>& arguments,
+            const std::string& out, const std::string& err) {
+  std::vector<std::string> words = {program};
   words.insert(words.end(), arguments.begin(), arguments.end());
   std::vector<char*> pointers;
   for (std::string& word : words) pointers.push_back(word.data());
@@ -31,9 +31,9 @@ pid_t spawn(const std::vector<std::string>& arguments, const std::string& out,
   posix_spawn_file_actions_addopen(&actions, STDOUT_FILENO, out.c_str(), flags, 0600);
   posix_spawn_file_actions_addopen(&actions, STDERR_FILENO, err.c_str(), flags, 0600);
   pid_t pid = -1;
-  const int error = posix_spawn(&pid, CYCLOID_PROGRAM, &actions, nullptr, pointers.data(), environ);
+  const int error = posix_spawn(&pid, program.c_str(), &actions, nullptr, pointers.data(), environ);
   posix_spawn_file_actions_destroy(&actions);
-  if (error != 0) throw std::runtime_error("cannot start " CYCLOID_PROGRAM);
+  if (error != 0) throw std::runtime_error("cannot start " + program);
   return pid;
 }
 
@@ -53,8 +53,12 @@ Ran run_program(const std::vector<std::string>& arguments) {
   return Background(arguments).wait();
 }
 
-Background::Background(const std::vector<std::string>& arguments)
-    : pid_(spawn(arguments, folder_.file("out"), folder_.file("err"))) {}
+Ran run_other(const std::string& program, const std::vector<std::string>& arguments) {
+  return Background(arguments, program).wait();
+}
+
+Background::Background(const std::vector<std::string>& arguments, const std::string& program)
+    : pid_(spawn(program, arguments, folder_.file("out"), folder_.file("err"))) {}
 
 Background::~Background() {
   if (reaped_) return;

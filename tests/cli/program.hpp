@@ -17,6 +17,8 @@ struct Ran {
 
 /// Runs the built program to its end.
 Ran run_program(const std::vector<std::string>& arguments);
+/// Runs another one, named by its path.
+Ran run_other(const std::string& program, const std::vector<std::string>& arguments);
 
 /// A folder of its own for a test, removed with it.
 class Folder {
@@ -32,10 +34,11 @@ class Folder {
   std::filesystem::path path_;
 };
 
-/// The built program beside the test; ended with it.
+/// The built program, or another, beside the test; ended with it.
 class Background {
  public:
-  explicit Background(const std::vector<std::string>& arguments);
+  explicit Background(const std::vector<std::string>& arguments,
+                      const std::string& program = CYCLOID_PROGRAM);
   ~Background();
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;

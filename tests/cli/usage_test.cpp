@@ -37,8 +37,17 @@ TEST(Usage, BadCommandLinesExitWithTwoAndNameTheWord) {
 }
 
 TEST(Usage, HelpNamesTheExitCodes) {
-  const std::vector<std::vector<std::string>> commands = {
-      {}, {"run"}, {"replay"}, {"verify"}, {"diff"}, {"scene"}, {"scene", "check"}, {"version"}};
+  const std::vector<std::vector<std::string>> commands = {{},
+                                                          {"run"},
+                                                          {"replay"},
+                                                          {"verify"},
+                                                          {"diff"},
+                                                          {"scene"},
+                                                          {"scene", "check"},
+                                                          {"golden"},
+                                                          {"golden", "make"},
+                                                          {"golden", "check"},
+                                                          {"version"}};
   for (std::vector<std::string> arguments : commands) {
     arguments.push_back("--help");
     const Ran ran = run_program(arguments);

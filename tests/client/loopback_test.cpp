@@ -14,48 +14,11 @@
 #include "client/join.hpp"
 #include "client/replica/replica.hpp"
 #include "protocol/log_format.hpp"
-#include "server/serve.hpp"
 #include "tests/client/authority.hpp"
+#include "tests/client/served.hpp"
 
 namespace cycloid::client {
 namespace {
-
-constexpr std::chrono::seconds kDeadline{30};
-
-/// A real server on its own thread and a port of its own, stopped with the test.
-class Served {
- public:
-  explicit Served(server::ServeOptions options) {
-    options.catch_signals = false;
-    options.stop_on_log_error = true;
-    report_ = std::async(std::launch::async, [this, options = std::move(options)] {
-      return server::serve(
-          options, [this](std::uint16_t port) { port_.set_value(port); }, stop_.get_token());
-    });
-  }
-  ~Served() {
-    stop_.request_stop();
-    if (report_.valid()) report_.wait();
-  }
-  std::uint16_t port() {
-    auto port = port_.get_future();
-    if (port.wait_for(kDeadline) == std::future_status::ready) return port.get();
-    ADD_FAILURE() << "the server does not listen";
-    return 1;
-  }
-  server::ServeReport report() {
-    if (report_.wait_for(kDeadline) != std::future_status::ready) {
-      ADD_FAILURE() << "the server did not end in time";
-      stop_.request_stop();
-    }
-    return report_.get();
-  }
-
- private:
-  std::promise<std::uint16_t> port_;
-  std::stop_source stop_;
-  std::future<server::ServeReport> report_;
-};
 
 JoinOptions visit(std::uint16_t port, protocol::Mode mode) {
   JoinOptions options;

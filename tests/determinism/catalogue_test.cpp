@@ -1,12 +1,13 @@
 #include "scenes/catalogue.hpp"
 
+#include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
-#include <iomanip>
-#include <map>
 #include <sstream>
 
+#include "scenes/golden.hpp"
 #include "scenes/simulation.hpp"
 
 namespace cycloid::scenes {
@@ -35,38 +36,51 @@ void step(const Scene& scene, Simulation& simulation) {
   ASSERT_TRUE(error.ok()) << error.field << " at tick " << simulation.tick() + 1;
 }
 
-std::string hex(std::uint64_t digest) {
-  std::ostringstream text;
-  text << std::hex << std::setw(16) << std::setfill('0') << digest;
-  return text.str();
+std::vector<std::string> names() {
+  std::vector<std::string> names;
+  for (const CatalogueEntry& entry : catalogue()) names.push_back(entry.name);
+  return names;
 }
 
-/// goldens.txt: "scene tick digest" per line. It holds on every target; a commit that changes the
-/// arithmetic replaces it, raises kSolverVersion and says why.
-std::map<std::string, std::map<int, std::string>> read_goldens() {
-  std::ifstream file(CYCLOID_SOURCE_DIR "/tests/determinism/goldens.txt");
-  std::map<std::string, std::map<int, std::string>> goldens;
-  std::string name;
-  int tick = 0;
-  std::string digest;
-  while (file >> name >> tick >> digest) goldens[name][tick] = digest;
-  return goldens;
+/// goldens.txt holds on every target; a commit that changes the arithmetic replaces it, raises
+/// kSolverVersion and says why.
+const GoldenFile& goldens() {
+  static const GoldenFile kGoldens = [] {
+    std::ifstream stream(CYCLOID_SOURCE_DIR "/tests/determinism/goldens.txt", std::ios::binary);
+    std::ostringstream text;
+    text << stream.rdbuf();
+    ParsedGolden parsed = parse_golden(text.str());
+    EXPECT_TRUE(parsed.file) << parsed.mistake.line << ": " << parsed.mistake.reason;
+    return parsed.file.value_or(GoldenFile());
+  }();
+  return kGoldens;
+}
+
+TEST(Goldens, AreOfThisVersionAndOfTheWholeCatalogueAtFourTicks) {
+  EXPECT_EQ(goldens().solver_version, solver::kSolverVersion);
+  std::vector<std::string> listed;
+  for (const GoldenScene& golden : goldens().scenes) {
+    listed.push_back(golden.name);
+    std::vector<std::uint64_t> ticks;
+    for (const GoldenRow& row : golden.rows) ticks.push_back(row.tick);
+    EXPECT_THAT(ticks, testing::ElementsAre(1, 10, 100, 600)) << golden.name;
+  }
+  EXPECT_THAT(listed, testing::ElementsAreArray(names()));
 }
 
 TEST_P(Catalogue, DigestsAreTheGoldens) {
-  const auto goldens = read_goldens();
   const Scene scene = this->scene();
-  Simulation simulation = start(scene);
-  std::map<int, std::string> now;
-  for (int tick = 1; tick <= 600; ++tick) {
-    step(scene, simulation);
-    if (tick == 1 || tick == 10 || tick == 100 || tick == 600) now[tick] = hex(simulation.digest());
-  }
-  const auto golden = goldens.find(GetParam());
-  std::ostringstream rows;
-  for (const auto& [tick, digest] : now) rows << GetParam() << ' ' << tick << ' ' << digest << '\n';
-  ASSERT_TRUE(golden != goldens.end()) << "no golden; now:\n" << rows.str();
-  EXPECT_EQ(golden->second, now) << "now:\n" << rows.str();
+  const std::vector<GoldenScene>& all = goldens().scenes;
+  const auto golden = std::find_if(all.begin(), all.end(), [](const GoldenScene& candidate) {
+    return candidate.name == GetParam();
+  });
+  ASSERT_TRUE(golden != all.end()) << "no golden; ./dev mint";
+  EXPECT_EQ(golden->scene_digest, scene_digest(scene));
+  EXPECT_EQ(golden->inputs_digest, inputs_digest(scene, golden->ticks));
+  GoldenWalk walk(scene, start(scene));
+  const auto mismatch = compare_golden(*golden, walk, golden->ticks);
+  EXPECT_FALSE(mismatch) << mismatch_text(*mismatch);
+  EXPECT_EQ(walk.tick(), golden->ticks);
 }
 
 // Two worlds side by side, compared after every tick, so that a failure names the first bad one.
@@ -150,12 +164,6 @@ TEST_P(Catalogue, OtherWorldsAndMovesAreInvisible) {
     beside = std::move(moved);
     ASSERT_EQ(alone.digest(), beside.digest()) << "tick " << tick;
   }
-}
-
-std::vector<std::string> names() {
-  std::vector<std::string> names;
-  for (const CatalogueEntry& entry : catalogue()) names.push_back(entry.name);
-  return names;
 }
 
 std::string test_name(const testing::TestParamInfo<std::string>& info) {

@@ -1,0 +1,70 @@
+#pragma once
+
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "cli/log_file.hpp"
+#include "solver/trace.hpp"
+
+namespace cycloid::cli {
+
+/// How a match is stepped; changes no bit.
+struct StepSetting {
+  int workers = 1;
+  int lanes = 4;
+};
+
+/// A match that can be stepped any number of times: a scene by the frames of a log, or by its
+/// script.
+struct Match {
+  std::string name;
+  std::optional<LoadedLog> log;
+  scenes::Scene scene;
+
+  /// How long it is; a scene by its script has no end.
+  std::uint64_t ticks(std::uint64_t otherwise) const {
+    return log ? log->log.ticks.size() : otherwise;
+  }
+  /// Those of the log's frame, or what the script says for so many seats.
+  /// @pre 1 <= tick <= ticks(tick)
+  std::vector<scenes::SeatInput> inputs(std::uint64_t tick, int seats) const;
+};
+
+/// A log, a scene file or a catalogue name; a Failure says what is wrong with it.
+Match open_match(const std::string& what);
+
+/// The first difference of two ticks' inputs as "seat 1: axes[0]: 100 (0x0064) against -3
+/// (0xfffd)", or "".
+std::string input_difference(const std::vector<scenes::SeatInput>& a,
+                             const std::vector<scenes::SeatInput>& b);
+
+/// A match from tick 0 on: the digest after every tick.
+struct Course {
+  std::vector<std::uint64_t> digests;  ///< By tick; that of the world as it was made is [0].
+  std::string fault;  ///< Why the tick of the last digest could not be made, or "".
+};
+
+/// One tick, phase by phase.
+struct TickTrace {
+  std::uint64_t digest = 0;  ///< Of the state after it.
+  std::string fault;         ///< Why it could not be made, or "".
+  std::vector<solver::TracedPhase> phases;
+};
+
+/// What a TickTrace is to hold besides the digest of every phase.
+struct TraceDetail {
+  bool objects = false;
+  std::string object;  ///< Whose fields, such as "contact 7".
+};
+
+/// Steps as far as `ticks`, or to the tick that cannot be made.
+Course run_course(const Match& match, std::uint64_t ticks, const StepSetting& setting);
+
+/// Steps to `tick` and traces it; tick 0 is the world as it was made. A Failure where the match
+/// does not come so far.
+TickTrace trace_tick(const Match& match, std::uint64_t tick, const TraceDetail& detail,
+                     const StepSetting& setting);
+
+}  // namespace cycloid::cli

@@ -1,0 +1,234 @@
+#include "cli/report.hpp"
+
+#include <algorithm>
+#include <cstdio>
+#include <iostream>
+
+namespace cycloid::cli {
+namespace {
+
+const char* exit_name(Exit exit) {
+  switch (exit) {
+    case kExitGood:
+      return "good";
+    case kExitDiverged:
+      return "diverged";
+    case kExitUsage:
+      return "usage";
+    case kExitCorrupt:
+      return "corrupt";
+    case kExitIncompatible:
+      return "incompatible";
+    case kExitIo:
+      return "input/output";
+  }
+  return "unknown";
+}
+
+/// The length of the UTF-8 character that begins at `at`, or 0 where none does that XML may hold.
+std::size_t character_bytes(std::string_view text, std::size_t at) {
+  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[at + i]); };
+  const unsigned lead = byte(0);
+  if (lead < 0x80) {
+    const bool held = lead >= 0x20 || lead == '\t' || lead == '\n' || lead == '\r';
+    return held && lead != 0x7f ? 1 : 0;
+  }
+  const std::size_t size = lead < 0xc2   ? 0
+                           : lead < 0xe0 ? 2
+                           : lead < 0xf0 ? 3
+                           : lead < 0xf5 ? 4
+                                         : 0;
+  if (size == 0 || text.size() - at < size) return 0;
+  std::uint32_t code = lead & (0xffu >> (size + 1));
+  for (std::size_t i = 1; i < size; ++i) {
+    if ((byte(i) & 0xc0) != 0x80) return 0;
+    code = code << 6 | (byte(i) & 0x3f);
+  }
+  const bool overlong = (size == 3 && code < 0x800) || (size == 4 && code < 0x10000);
+  const bool surrogate = code >= 0xd800 && code <= 0xdfff;
+  const bool control = code < 0xa0;  // Allowed, and bad to read.
+  return overlong || surrogate || control || code == 0xfffe || code == 0xffff || code > 0x10ffff
+             ? 0
+             : size;
+}
+
+/// For text and for values in double quotes, where an unescaped line end would become a space.
+std::string xml(std::string_view text) {
+  std::string out;
+  for (std::size_t at = 0; at < text.size();) {
+    const char c = text[at];
+    const std::size_t size = character_bytes(text, at);
+    if (size == 0) {
+      const auto byte = static_cast<unsigned char>(c);
+      out += {'\\', 'x', "0123456789abcdef"[byte >> 4], "0123456789abcdef"[byte & 15]};
+    } else if (c == '&' || c == '<' || c == '>' || c == '"' || c == '\'' ||
+               (size == 1 && c < ' ')) {
+      out += "&#" + std::to_string(static_cast<int>(c)) + ";";
+    } else {
+      out += text.substr(at, size);
+    }
+    at += std::max<std::size_t>(size, 1);
+  }
+  return out;
+}
+
+/// "1.234"
+std::string in_seconds(double seconds) {
+  char text[32];
+  std::snprintf(text, sizeof text, "%.3f", seconds);
+  return text;
+}
+
+/// What ends a workflow command or looks like a part of it; in a property also ':' and ','.
+std::string workflow(std::string_view text, bool property) {
+  std::string out;
+  for (const char c : text) {
+    if (c == '%') {
+      out += "%25";
+    } else if (c == '\r') {
+      out += "%0D";
+    } else if (c == '\n') {
+      out += "%0A";
+    } else if (property && c == ':') {
+      out += "%3A";
+    } else if (property && c == ',') {
+      out += "%2C";
+    } else {
+      out += c;
+    }
+  }
+  return out;
+}
+
+std::string workflow_error(const Report& report, const Verdict& verdict) {
+  const std::string& file = verdict.file.empty() ? verdict.name : verdict.file;
+  std::string command = "::error file=" + workflow(file, true);
+  if (verdict.line != 0) command += ",line=" + std::to_string(verdict.line);
+  command += ",title=" + workflow(report.suite + ": " + exit_name(verdict.exit), true);
+  return command + "::" + workflow(verdict.name + ": " + verdict.text, false) + "\n";
+}
+
+std::string test_case(const Report& report, const Verdict& verdict) {
+  std::string text = "    <testcase classname=\"" + xml(report.suite) + "\" name=\"" +
+                     xml(verdict.name) + "\" time=\"" + in_seconds(verdict.seconds) + "\"";
+  if (verdict.exit == kExitGood) return text + "/>\n";
+  return text + ">\n      <failure type=\"" + exit_name(verdict.exit) + "\" message=\"" +
+         xml(verdict.text) + "\">" + xml(verdict.name + ": " + verdict.text) +
+         "</failure>\n    </testcase>\n";
+}
+
+void publish_files(const Report& report, const ReportOptions& options, bool json) {
+  if (options.github) (json ? std::cerr : std::cout) << report_github(report) << std::flush;
+  if (!options.junit.empty()) write_file(options.junit, report_junit(report));
+}
+
+}  // namespace
+
+Exit Report::worst() const {
+  Exit worst = kExitGood;
+  for (const Verdict& verdict : verdicts) worst = std::max(worst, verdict.exit);
+  return worst;
+}
+
+std::uint64_t Report::good() const {
+  return static_cast<std::uint64_t>(
+      std::count_if(verdicts.begin(), verdicts.end(),
+                    [](const Verdict& verdict) { return verdict.exit == kExitGood; }));
+}
+
+std::uint64_t Report::ticks() const {
+  std::uint64_t ticks = 0;
+  for (const Verdict& verdict : verdicts) ticks += verdict.ticks;
+  return ticks;
+}
+
+double Report::seconds() const {
+  double seconds = 0.0;
+  for (const Verdict& verdict : verdicts) seconds += verdict.seconds;
+  return seconds;
+}
+
+std::string Report::summary() const {
+  return std::to_string(good()) + " of " + std::to_string(verdicts.size()) + " " + item +
+         "s good, " + std::to_string(ticks()) + " ticks replayed";
+}
+
+std::string report_text(const Report& report) {
+  std::string text;
+  for (const Verdict& verdict : report.verdicts)
+    text += verdict.name + ": " + verdict.text + ", " + std::to_string(verdict.ticks) + " ticks\n";
+  return text + report.summary() + "\n";
+}
+
+Json report_json(const Report& report) {
+  Json verdicts = Json::array();
+  for (const Verdict& verdict : report.verdicts) {
+    verdicts.push_back({{report.item, verdict.name},
+                        {"good", verdict.exit == kExitGood},
+                        {"ticks", verdict.ticks},
+                        {"verdict", verdict.text},
+                        {"exit", static_cast<int>(verdict.exit)}});
+  }
+  return {{report.item + "s", verdicts},
+          {"good", report.good()},
+          {"bad", report.verdicts.size() - report.good()},
+          {"ticks", report.ticks()}};
+}
+
+std::string report_junit(const Report& report) {
+  const std::string totals = " name=\"" + xml(report.suite) + "\" tests=\"" +
+                             std::to_string(report.verdicts.size()) + "\" failures=\"" +
+                             std::to_string(report.verdicts.size() - report.good()) +
+                             "\" errors=\"0\" time=\"" + in_seconds(report.seconds()) + "\"";
+  std::string text = "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites" + totals +
+                     ">\n  <testsuite" + totals + " skipped=\"0\">\n";
+  for (const Verdict& verdict : report.verdicts) text += test_case(report, verdict);
+  return text + "  </testsuite>\n</testsuites>\n";
+}
+
+std::string report_github(const Report& report) {
+  std::string text;
+  for (const Verdict& verdict : report.verdicts)
+    if (verdict.exit != kExitGood) text += workflow_error(report, verdict);
+  return text + "::notice title=" + workflow(report.suite, true) +
+         "::" + workflow(report.summary(), false) + "\n";
+}
+
+void add_report_options(CLI::App* command, ReportOptions& options) {
+  command->add_option("--junit", options.junit, "Write the verdicts to this file as JUnit XML");
+  command->add_flag("--github", options.github,
+                    "Print the bad verdicts as annotations for GitHub Actions");
+}
+
+Exit publish(const Report& report, const ReportOptions& options, bool json) {
+  if (json) {
+    print_json(report_json(report), report.worst());
+  } else {
+    std::cout << report_text(report);
+  }
+  publish_files(report, options, json);
+  return report.worst();
+}
+
+Exit publish_failure(Verdict& subject, const std::string& suite, const ReportOptions& options,
+                     bool json, const std::function<Exit()>& work) {
+  try {
+    return work();
+  } catch (const Failure& failure) {
+    subject.exit = failure.exit;
+    subject.text = failure.what();
+    if (subject.text.starts_with(subject.name + ":")) {  // Reports have the name elsewhere.
+      const std::string place = subject.name + ":" + std::to_string(subject.line) + ":";
+      const bool placed = subject.text.starts_with(place);
+      subject.text.erase(0, (placed ? place : subject.name + ":").size() + 1);
+    }
+    try {
+      publish_files({suite, "run", {subject}}, options, json);
+    } catch (const Failure& second) {
+      throw Failure(failure.exit, std::string(failure.what()) + "\n" + second.what());
+    }
+    throw;
+  }
+}
+
+}  // namespace cycloid::cli

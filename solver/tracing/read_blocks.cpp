@@ -1,0 +1,80 @@
+#include "solver/tracing/tracer.hpp"
+
+namespace cycloid::solver {
+
+template <int W>
+static float lane_of(const Lanes<W>& lanes, int lane) {
+  return lanes.raw[lane];
+}
+template <int N, int W>
+static Vec<N> lane_of(const Vec<N, Lanes<W>>& lanes, int lane) {
+  Vec<N> value;
+  for (int i = 0; i < N; ++i) value[i] = lane_of(lanes[i], lane);
+  return value;
+}
+
+template <int D, int W>
+static PointWork<D> point_of(const typename ContactBlock<D, W>::Point& point, int lane) {
+  PointWork<D> work;
+  work.r_a = lane_of(point.r_a, lane);
+  work.r_b = lane_of(point.r_b, lane);
+  work.separation = lane_of(point.separation, lane);
+  work.normal_mass = lane_of(point.normal_mass, lane);
+  work.normal_impulse = lane_of(point.normal_impulse, lane);
+  work.bounce_impulse = lane_of(point.bounce_impulse, lane);
+  work.position_impulse = lane_of(point.position_impulse, lane);
+  for (int t = 0; t < Dim<D>::kTangents; ++t) {
+    work.tangent_mass[t] = lane_of(point.tangent_mass[t], lane);
+    work.tangent_impulse[t] = lane_of(point.tangent_impulse[t], lane);
+  }
+  return work;
+}
+
+/// @param points  How many the contact has; other lanes of the block may have more.
+template <int D, int W>
+static ContactWork<D> contact_of(const ContactBlock<D, W>& block, int lane, std::uint32_t points) {
+  ContactWork<D> work{};
+  work.body_a = block.body_a[static_cast<std::size_t>(lane)];
+  work.body_b = block.body_b[static_cast<std::size_t>(lane)];
+  work.normal = lane_of(block.normal, lane);
+  for (std::size_t t = 0; t < work.tangent.size(); ++t)
+    work.tangent[t] = lane_of(block.tangent[t], lane);
+  work.friction = lane_of(block.friction, lane);
+  work.restitution = lane_of(block.restitution, lane);
+  work.rolling = lane_of(block.rolling, lane);
+  work.twist = lane_of(block.twist, lane);
+  work.pull = lane_of(block.pull, lane);
+  work.bias_rate = lane_of(block.bias_rate, lane);
+  work.mass_scale = lane_of(block.mass_scale, lane);
+  work.impulse_scale = lane_of(block.impulse_scale, lane);
+  work.rolling_impulse = lane_of(block.rolling_impulse, lane);
+  for (std::uint32_t p = 0; p < points; ++p) work.points[p] = point_of<D, W>(block.points[p], lane);
+  return work;
+}
+
+template <int D, int W>
+void read_blocks(const StepScratch<D>& scratch, std::vector<ContactWork<D>>& contacts) {
+  for (const ContactBlock<D, W>& block :
+       std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks) {
+    for (int lane = 0; lane < W; ++lane) {
+      const std::uint32_t index = block.contact[static_cast<std::size_t>(lane)];
+      if (index == kNone) continue;
+      contacts[index] = contact_of(block, lane, scratch.contacts[index].point_count);
+    }
+  }
+}
+
+template <int D, int W>
+struct InstantiateRead {
+  static constexpr auto kRead = &read_blocks<D, W>;
+};
+template struct InstantiateRead<2, 1>;
+template struct InstantiateRead<2, 4>;
+template struct InstantiateRead<2, 8>;
+template struct InstantiateRead<2, 16>;
+template struct InstantiateRead<3, 1>;
+template struct InstantiateRead<3, 4>;
+template struct InstantiateRead<3, 8>;
+template struct InstantiateRead<3, 16>;
+
+}  // namespace cycloid::solver

@@ -1,0 +1,186 @@
+#!/usr/bin/env python3
+"""Reads compiled objects: no fused multiply-add, no estimate, nothing imported outside a list.
+
+    objects.py [--objdump PROGRAM] [--nm PROGRAM] [--imports FILE | --instructions-only] FILE...
+
+FILE is an archive, an object or a linked program of any processor of instructions.py. Imports are
+what no FILE defines. Exit status 0 when clean, 1 with one line for each finding, 2 when a file
+cannot be judged: unknown processor, no machine code, a tool that fails.
+"""
+
+import argparse
+import re
+import subprocess
+import sys
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass
+from pathlib import Path
+
+from instructions import Processor, processor_of, why_forbidden
+
+IMPORTS = Path(__file__).with_name("imports.txt")
+PREFIXES = {"lock", "rep", "repz", "repnz", "data16", "cs", "ds", "es", "fs", "gs", "ss", "bnd"}
+
+
+class CannotJudge(Exception):
+    """Nothing was found because nothing was read."""
+
+
+@dataclass(frozen=True)
+class Instruction:
+    """One line of a disassembly, and where it stands."""
+
+    member: str  # Of the archive: "step.cpp.o"; the file itself where it is no archive.
+    function: str
+    text: str
+    processor: Processor
+
+
+@dataclass
+class Imports:
+    """Patterns of names, by pattern of the object that may import them."""
+
+    allowed: list[tuple[re.Pattern[str], re.Pattern[str]]]
+
+    def allow(self, member: str, name: str) -> bool:
+        return any(m.fullmatch(member) and n.fullmatch(name) for m, n in self.allowed)
+
+
+def glob(pattern: str) -> re.Pattern[str]:
+    """`*` is any text; all else is itself, brackets too."""
+    return re.compile(".*".join(re.escape(part) for part in pattern.split("*")))
+
+
+def read_imports(text: str) -> Imports:
+    """`[object]` begins a section, `#` a reason; every other line is the pattern of a name."""
+    allowed: list[tuple[re.Pattern[str], re.Pattern[str]]] = []
+    member = None
+    for line in text.splitlines():
+        if line.startswith("[") and line.endswith("]"):
+            member = glob(line[1:-1])
+        elif line and not line.startswith("#"):
+            if member is None:
+                raise CannotJudge(f"the list of imports names {line} before any [object]")
+            allowed.append((member, glob(line)))
+    return Imports(allowed)
+
+
+def output_of(command: list[str]) -> str:
+    """What a program prints; CannotJudge where it fails."""
+    try:
+        done = subprocess.run(command, capture_output=True, text=True, check=False)
+    except OSError as error:
+        raise CannotJudge(f"{command[0]}: {error.strerror}") from error
+    if done.returncode != 0:
+        raise CannotJudge(f"{' '.join(command)}: {done.stderr.strip()}")
+    return done.stdout
+
+
+def instructions(disassembly: str) -> Iterator[Instruction]:
+    """Every instruction that objdump prints, with the function and the object around it."""
+    member, function, processor = "", "", None
+    for line in disassembly.splitlines():
+        if match := re.match(r"(\S.*):\s+file format (\S+)", line):
+            member, processor = Path(match[1]).name, processor_of(match[2].lower())
+            if processor is None:
+                raise CannotJudge(f"{match[1]}: no list of instructions for {match[2]}")
+        elif match := re.match(r"[0-9a-f]+ <(.*)>:$", line):
+            function = match[1]
+        elif match := re.match(r"\s*[0-9a-f]+:\s+(\S.*)$", line):
+            if processor is None:
+                raise CannotJudge("a disassembly that does not name its file format")
+            words = match[1].split()
+            while len(words) > 1 and (words[0] in PREFIXES or words[0] == "{evex}"):
+                words = words[1:]
+            yield Instruction(member, function, " ".join(words), processor)
+
+
+def forbidden_instructions(disassembly: str) -> tuple[list[str], int]:
+    """One line for each forbidden instruction; and how many instructions were read."""
+    findings: list[str] = []
+    count = 0
+    known: dict[tuple[str, str], str] = {}
+    for one in instructions(disassembly):
+        count += 1
+        key = (one.processor.file_format, one.text)
+        if key not in known:
+            known[key] = why_forbidden(one.processor, one.text)
+        if known[key]:
+            findings.append(f"{one.member}: {one.function}: {one.text}\n  {known[key]}")
+    return findings, count
+
+
+def names_by_member(listing: str, file: str) -> Iterator[tuple[str, str, bool]]:
+    """(object, name, whether it defines the name for others) of every line of nm -A."""
+    for line in listing.splitlines():
+        match = re.match(r"(.*?):\s*(?:[0-9a-f]{6,})?\s*([A-Za-z?-]) (.*)$", line)
+        if match is None:
+            continue
+        # "archive.a:member.o: " of GNU, "archive.a: member.o: " of LLVM, "object.o: " of both.
+        member = Path(match[1].rstrip(":").split(":")[-1].strip() or file).name
+        if match[2] in "Uwv" or match[2].isupper() or match[2] == "u":
+            yield member, match[3], match[2] not in "Uwv"
+
+
+def foreign_imports(listings: Iterable[tuple[str, str]], imports: Imports) -> list[str]:
+    """One line for each name that an object needs, that no file defines, and that is not listed."""
+    needed: dict[tuple[str, str], None] = {}
+    defined: set[str] = set()
+    for file, listing in listings:
+        for member, name, is_defined in names_by_member(listing, file):
+            if "__gnu_lto_slim" in name:
+                raise CannotJudge(f"{file}: {member} holds no machine code yet (-flto); give the "
+                                  "linked program and --instructions-only")
+            if is_defined:
+                defined.add(name)
+            else:
+                needed[(member, name)] = None
+    if not defined:
+        raise CannotJudge("no names were read")
+    return [
+        f"{member}: imports {name}\n  not in the list: the solver takes no libm, clock, chance, "
+        "environment, locale or streams; where it is harmless, add it to imports.txt, and say why"
+        for member, name in needed
+        if name not in defined and not imports.allow(member, name)
+    ]
+
+
+def judge(arguments: argparse.Namespace) -> tuple[list[str], str]:
+    """All findings, and a sentence on what was read."""
+    findings: list[str] = []
+    total = 0
+    for file in arguments.files:
+        command = [arguments.objdump, "-d", "-C", "--no-show-raw-insn", file]
+        found, count = forbidden_instructions(output_of(command))
+        if count == 0:
+            raise CannotJudge(f"{file}: no machine code in it")
+        findings += found
+        total += count
+    summary = f"{total} instructions in {len(arguments.files)} files"
+    if arguments.instructions_only:
+        return findings, summary
+    imports = read_imports(Path(arguments.imports).read_text(encoding="utf-8"))
+    listings = [(file, output_of([arguments.nm, "-A", "-C", file])) for file in arguments.files]
+    return findings + foreign_imports(listings, imports), summary + ", and all imports"
+
+
+def main(words: list[str]) -> int:
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--objdump", default="objdump", help="of the target")
+    parser.add_argument("--nm", default="nm", help="of the target")
+    parser.add_argument("--imports", default=str(IMPORTS), help="the list of allowed imports")
+    parser.add_argument("--instructions-only", action="store_true", help="for linked programs")
+    parser.add_argument("files", nargs="+", metavar="FILE")
+    try:
+        findings, summary = judge(parser.parse_args(words))
+    except (CannotJudge, OSError) as error:
+        print(f"objects.py: {error}", file=sys.stderr)
+        return 2
+    for finding in findings:
+        print(finding)
+    print(f"{len(findings)} findings; read {summary}")
+    return 1 if findings else 0
+
+
+if __name__ == "__main__":
+    sys.exit(main(sys.argv[1:]))

@@ -1,0 +1,138 @@
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "cli/log_file.hpp"
+#include "cli/output.hpp"
+#include "tests/hostile/matches.hpp"
+
+namespace cycloid::hostile {
+namespace {
+
+/// What `cycloid verify` finds out about the bytes of a log.
+struct Finding {
+  std::string verdict;  ///< "corrupt", "incompatible", "diverged", "cut", or "good".
+  std::vector<std::uint64_t> digests;
+  std::string why;  ///< What the program would print.
+};
+
+Finding verified(std::span<const std::byte> bytes) {
+  Finding finding;
+  try {
+    const cli::LoadedLog loaded = cli::parse_log("log", bytes);
+    cli::ReplayOptions options;
+    options.on_tick = [&](std::uint64_t, std::uint64_t digest) {
+      finding.digests.push_back(digest);
+    };
+    const cli::Replayed replayed = cli::replay(loaded, options);
+    finding.verdict = replayed.divergence ? "diverged" : loaded.blemish().empty() ? "good" : "cut";
+    if (finding.verdict == "good") {
+      EXPECT_EQ(finding.digests.size(), loaded.log.ticks.size());
+    }
+  } catch (const cli::Failure& failure) {
+    finding.why = failure.what();
+    finding.verdict = failure.exit == cli::kExitIncompatible ? "incompatible" : "corrupt";
+    EXPECT_TRUE(failure.exit == cli::kExitIncompatible || failure.exit == cli::kExitCorrupt);
+  }
+  return finding;
+}
+
+void flip(std::size_t bit, protocol::Bytes& bytes) {
+  bytes[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
+}
+
+void print(const std::map<std::string, int>& counts) {
+  for (const auto& [verdict, count] : counts) std::printf("%s %d  ", verdict.c_str(), count);
+  std::printf("\n");
+}
+
+class HostileLog : public testing::Test {
+ protected:
+  Match match = played("vehicle", 5);
+  protocol::Bytes bytes = match.log;
+  std::map<std::string, int> counts;
+
+  bool is_prefix(const std::vector<std::uint64_t>& digests) const {
+    return digests.size() <= match.digests.size() &&
+           std::equal(digests.begin(), digests.end(), match.digests.begin());
+  }
+};
+
+TEST_F(HostileLog, AsItIsItIsGood) {
+  const Finding finding = verified(bytes);
+  EXPECT_EQ(finding.verdict, "good") << finding.why;
+  EXPECT_EQ(finding.digests, match.digests);
+}
+
+/// A bad disk: the checks are those of the original, so no flip at all passes for good.
+TEST_F(HostileLog, EveryBitFlipIsDetected) {
+  for (std::size_t bit = 0; bit < bytes.size() * 8; ++bit) {
+    flip(bit, bytes);
+    const Finding finding = verified(bytes);
+    ASSERT_NE(finding.verdict, "good") << "bit " << bit;
+    ASSERT_TRUE(is_prefix(finding.digests)) << "bit " << bit;
+    ++counts[finding.verdict];
+    flip(bit, bytes);
+  }
+  print(counts);
+}
+
+TEST_F(HostileLog, CutAtEveryByteItIsAPrefixOrCorrupt) {
+  for (std::size_t size = 0; size < bytes.size(); ++size) {
+    const Finding finding = verified(std::span(bytes).first(size));
+    const bool whole_header = size >= match.ends[0];
+    ASSERT_EQ(finding.verdict, whole_header ? "cut" : "corrupt") << size;
+    ASSERT_TRUE(is_prefix(finding.digests)) << size;
+    const auto whole = [&](std::size_t end) { return end <= size; };
+    const auto records = std::count_if(match.ends.begin() + 1, match.ends.end() - 1, whole);
+    ASSERT_EQ(finding.digests.size(), whole_header ? static_cast<std::size_t>(records) : 0u);
+  }
+}
+
+/// A hostile writer remakes the checks. In the records after the header nothing but a seat's origin
+/// and input that nothing listens to can then pass, and the digests are still those of the match.
+TEST_F(HostileLog, FlipsOfRecordsWithChecksRemadeAreRefusedDivergeOrChangeNothing) {
+  for (std::size_t bit = match.ends[0] * 8; bit < bytes.size() * 8; ++bit) {
+    protocol::Bytes damaged = bytes;
+    flip(bit, damaged);
+    refit_checks(match.ends, damaged);
+    const Finding finding = verified(damaged);
+    ASSERT_TRUE(is_prefix(finding.digests)) << "bit " << bit;
+    if (finding.verdict == "good") {
+      ASSERT_EQ(finding.digests, match.digests) << "bit " << bit;
+    }
+    ++counts[finding.verdict];
+  }
+  print(counts);
+  EXPECT_GT(counts["diverged"], 100);
+  EXPECT_GT(counts["corrupt"], 100);
+}
+
+/// The scene inside is flipped, its digest and the checks are remade: it is refused, diverges, or
+/// is a match of a scene that means the same.
+TEST_F(HostileLog, FlipsOfTheHeaderWithChecksRemadeAreRefusedDivergeOrAreAMatch) {
+  for (std::size_t bit = 0; bit < match.ends[0] * 8; ++bit) {
+    protocol::Bytes damaged = bytes;
+    flip(bit, damaged);
+    refit_checks(match.ends, damaged);
+    Finding finding = verified(damaged);
+    const protocol::Log log = protocol::read_log(damaged);
+    const scenes::Loaded scene = scenes::from_binary(log.header.scene);
+    if (finding.verdict == "incompatible" && scene.scene && bit / 8 > kSaltPlace) {
+      ++counts["digest remade"];
+      solver::store_little(scenes::scene_digest(*scene.scene), damaged.data() + kSceneDigestPlace);
+      refit_checks(match.ends, damaged);
+      finding = verified(damaged);
+    }
+    if (finding.verdict == "good") {
+      ASSERT_EQ(finding.digests, match.digests) << "bit " << bit;
+    }
+    ++counts[finding.verdict];
+  }
+  print(counts);
+  EXPECT_GT(counts["diverged"], 100);
+  EXPECT_GT(counts["corrupt"], 1000);
+}
+
+}  // namespace
+}  // namespace cycloid::hostile

@@ -1,0 +1,82 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "tests/properties/definitions.hpp"
+
+namespace cycloid::properties {
+
+/// What a call answered.
+struct Answer {
+  solver::Code code = solver::Code::kOk;
+  std::string field;
+  int index = -1;
+  std::uint32_t id_index = 0;
+  std::uint32_t id_generation = 0;
+  friend bool operator==(const Answer&, const Answer&) = default;
+};
+std::string text_of(const Answer& answer);
+
+/// A fault in the test's own handling of a restored state, to show that the test would find one in
+/// the solver's.
+enum class Flaw : std::uint8_t {
+  kNone,
+  kLowestBit,         ///< One bit of one velocity.
+  kForgottenForces,   ///< What waits for the next tick is gone.
+  kFreeListReversed,  ///< Seen by the next ids alone.
+  kForgottenMemory,   ///< Warm starting: seen by the next tick of what touches.
+};
+
+/// Plays the commands of a case on one world and knows what is alive in it.
+template <int D>
+class Player {
+ public:
+  /// @param revisits  Whether kRevisit is obeyed, and with which flaw.
+  Player(const Case& example, const Setting& setting, bool revisits, Flaw flaw);
+
+  /// Any command but kStep. An answer for each call that it made.
+  std::vector<Answer> obey(const Command& command);
+  Answer step();
+
+  const solver::World<D>& world() const { return *world_; }
+  /// Whether the events of the coming tick are those of a run without restores: which contacts
+  /// destroyed bodies had is told once and is no part of the state.
+  bool has_all_events() const { return !destroyed_ || !restored_; }
+  /// Why a restore failed; "" where none did.
+  const std::string& complaint() const { return complaint_; }
+
+ private:
+  template <class Id>
+  Answer keep(const solver::Result<Id>& result, std::vector<Id>& ids);
+  template <class Id>
+  Answer drop(solver::Error error, std::uint32_t choice, std::vector<Id>& ids);
+  Answer create(const Piece<D>& piece);
+  Answer obey_body(const Command& command, solver::BodyId id);
+  Answer obey_joint(const Command& command);
+  Answer obey_particle(const Command& command);
+  Answer obey_world(const Command& command);
+  void revisit(const Command& command);
+  void damage();
+  void look() const;
+  std::unique_ptr<solver::World<D>> make_world() const;
+
+  const Case& example_;
+  Setting setting_;
+  bool revisits_;
+  Flaw flaw_;
+  std::unique_ptr<solver::World<D>> world_;
+  std::unique_ptr<solver::World<D>> stranger_;
+  std::vector<solver::BodyId> bodies_;
+  std::vector<solver::JointId> joints_;
+  std::vector<solver::ParticleId> particles_;
+  std::vector<solver::LinkId> links_;
+  std::vector<solver::PinId> pins_;
+  bool destroyed_ = false;
+  bool restored_ = false;
+  std::string complaint_;
+};
+
+}  // namespace cycloid::properties

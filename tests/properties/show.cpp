@@ -1,0 +1,80 @@
+#include <ostream>
+
+#include "tests/properties/definitions.hpp"
+
+namespace cycloid::properties {
+
+static constexpr const char* kOpNames[] = {
+    "Step",           "CreateBody",     "Revisit",         "CreateGrid",   "DestroyBody",
+    "SetPose",        "SetVelocity",    "Force",           "Torque",       "Impulse",
+    "AngularImpulse", "Gravity",        "GravityScale",    "Damping",      "Mass",
+    "Material",       "Filter",         "CreateJoint",     "DestroyJoint", "Motor",
+    "Target",         "Steering",       "Anchor",          "Limits",       "Spring",
+    "Tuning",         "CreateParticle", "DestroyParticle", "CreateLink",   "DestroyLink",
+    "CreatePin",      "DestroyPin",     "Registers"};
+static_assert(std::size(kOpNames) == static_cast<std::size_t>(Op::kCount));
+
+static constexpr const char* kRevisitNames[] = {"saved and restored",
+                                                "encoded and decoded",
+                                                "decoded into a new world",
+                                                "restored after other ticks",
+                                                "moved",
+                                                "other workers and lanes",
+                                                "a stranger beside it",
+                                                "looked at"};
+static_assert(std::size(kRevisitNames) == static_cast<std::size_t>(Revisit::kCount));
+
+template <int D>
+static void remark_on_body(const Command& command, std::ostream& out) {
+  constexpr const char* kKinds[] = {"free", "static", "kinematic", "dynamic", "particle"};
+  const Piece<D> piece = piece_of<D>(command);
+  out << kKinds[static_cast<std::size_t>(piece.body.kind)] << " of " << piece.shapes.size()
+      << " shapes at";
+  for (const float value : piece.body.position.v) out << ' ' << value;
+}
+
+static void remark(const Case& example, const Command& command, std::ostream& out) {
+  switch (command.op) {
+    case Op::kStep:
+      out << 1 + command.a % 12 << " ticks";
+      return;
+    case Op::kCreateBody:
+      if (example.dimension == 2) remark_on_body<2>(command, out);
+      if (example.dimension == 3) remark_on_body<3>(command, out);
+      return;
+    case Op::kCreateGrid:
+      out << grid_of<2>(command).size() << " bodies";
+      return;
+    case Op::kCreateJoint:
+      out << name_of(joint_of<2>(command).kind) << " of bodies " << command.a << " and "
+          << command.b << " modulo those alive";
+      return;
+    case Op::kRevisit:
+      out << kRevisitNames[command.b % std::size(kRevisitNames)];
+      return;
+    default:
+      out << "of number " << command.a << " modulo those alive";
+  }
+}
+
+std::ostream& operator<<(std::ostream& out, const Case& example) {
+  const auto setting = [&](const Setting& of) {
+    out << '{' << of.workers << ", " << of.lanes << "}, ";
+  };
+  out << "Case{" << example.dimension << ", " << example.tuning << ", " << example.ground << ", "
+      << example.gravity << ", ";
+  setting(example.one);
+  setting(example.other);
+  out << "{\n";
+  for (const Command& command : example.commands) {
+    out << "    {Op::k" << kOpNames[static_cast<std::size_t>(command.op)] << ", " << command.a
+        << ", " << command.b << ", {";
+    for (std::size_t i = 0; i < command.v.size(); ++i) out << (i == 0 ? "" : ", ") << command.v[i];
+    out << "}},  // ";
+    remark(example, command, out);
+    out << '\n';
+  }
+  return out << "}}";
+}
+
+}  // namespace cycloid::properties
