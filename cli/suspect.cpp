@@ -1,11 +1,11 @@
 #include <algorithm>
 #include <charconv>
-#include <filesystem>
 #include <sstream>
 #include <utility>
 
 #include "cli/blame.hpp"
 #include "cli/child.hpp"
+#include "cli/files.hpp"
 #include "cli/trace_text.hpp"
 
 namespace cycloid::cli {
@@ -48,9 +48,7 @@ class SuspectThere : public Suspect {
       : program_(std::move(program)), match_(std::move(match)) {
     std::istringstream words(runner);
     for (std::string word; words >> word;) command_.push_back(word);
-    std::error_code error;
-    const bool beside = program_.find('/') == std::string::npos &&
-                        std::filesystem::is_regular_file(program_, error);
+    const bool beside = program_.find('/') == std::string::npos && kind_of(program_).is_file;
     command_.push_back(beside ? "./" + program_ : program_);  // Not one of that name in PATH.
     command_.insert(command_.end(), {"trace", match_});
   }
