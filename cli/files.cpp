@@ -40,7 +40,7 @@ std::string path_from(const std::string& file, const std::string& path) {
 }
 
 std::string path_to(const std::string& file, const std::string& name) {
-  return (std::filesystem::path(file).parent_path() / name).string();
+  return (std::filesystem::path(file).parent_path() / name).generic_string();
 }
 
 #else  // The C++ library of wasi has no <filesystem>; POSIX is there.
