@@ -11,13 +11,13 @@ double ms_between(Clock::time_point from, Clock::time_point to) {
 
 }  // namespace
 
-void Tally::begin_measuring() {
+void ClientTally::begin_measuring() {
   frames = snapshots = gaps = replaced = bytes_in = update_bytes = 0;
   frame_gap_ms.clear();
   input_to_state_ms.clear();
 }
 
-LoadClient::LoadClient(asio::io_context& io, const ClientPlan& plan, Tally& tally)
+LoadClient::LoadClient(asio::io_context& io, const ClientPlan& plan, ClientTally& tally)
     : plan_(plan), tally_(tally), socket_(io), timer_(io) {
   protocol::Hello hello;
   hello.scene_digest = plan.scene_digest;

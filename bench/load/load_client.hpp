@@ -35,7 +35,7 @@ struct ClientPlan {
 };
 
 /// What many clients have seen together; one thread.
-struct Tally {
+struct ClientTally {
   std::uint64_t joined = 0;
   std::uint64_t refused = 0;
   std::uint64_t closed = 0;  ///< Connections that ended, refused ones among them.
@@ -57,7 +57,7 @@ struct Tally {
 /// A client of the wire alone: it steps no world, so that thousands fit beside the server.
 class LoadClient : public std::enable_shared_from_this<LoadClient> {
  public:
-  LoadClient(asio::io_context& io, const ClientPlan& plan, Tally& tally);
+  LoadClient(asio::io_context& io, const ClientPlan& plan, ClientTally& tally);
   void start();
   void stop();
 
@@ -75,7 +75,7 @@ class LoadClient : public std::enable_shared_from_this<LoadClient> {
   void end();
 
   ClientPlan plan_;
-  Tally& tally_;
+  ClientTally& tally_;
   asio::ip::tcp::socket socket_;
   asio::steady_timer timer_;
   protocol::Framer framer_{protocol::kServerMessageBytesMax};

@@ -17,7 +17,7 @@ using Json = nlohmann::ordered_json;
 Json to_json(ScenarioResult& result) {
   Json groups = Json::array();
   for (GroupResult& group : result.groups) {
-    Tally& tally = group.tally;
+    ClientTally& tally = group.tally;
     const double updates = static_cast<double>(tally.frames + tally.snapshots);
     groups.push_back({{"name", group.name},
                       {"clients", group.clients},

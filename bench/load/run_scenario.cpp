@@ -18,16 +18,16 @@ constexpr double kWarmUpS = 3.0;
 constexpr std::chrono::nanoseconds kTick{16'666'667};
 
 /// A folder of its own that is gone afterwards.
-class Folder {
+class OwnFolder {
  public:
-  Folder()
+  OwnFolder()
       : path_(std::filesystem::temp_directory_path() /
               ("cycloid-load-" + std::to_string(::getpid()))) {
     std::filesystem::create_directories(path_);
   }
-  Folder(const Folder&) = delete;
-  Folder& operator=(const Folder&) = delete;
-  ~Folder() { std::filesystem::remove_all(path_); }
+  OwnFolder(const OwnFolder&) = delete;
+  OwnFolder& operator=(const OwnFolder&) = delete;
+  ~OwnFolder() { std::filesystem::remove_all(path_); }
   std::filesystem::path operator/(const char* name) const { return path_ / name; }
 
  private:
@@ -165,7 +165,7 @@ class Crowd {
 }  // namespace
 
 ScenarioResult run_scenario(const Scenario& scenario, const std::string& program, double seconds) {
-  const Folder folder;
+  const OwnFolder folder;
   const scenes::Scene scene = scene_of(scenario.scene);
   const std::filesystem::path scene_file = folder / "scene.json";
   std::ofstream(scene_file) << scenes::to_json(scene);

@@ -35,7 +35,7 @@ std::vector<Scenario> scenarios();
 struct GroupResult {
   std::string name;
   int clients = 0;
-  Tally tally;
+  ClientTally tally;
 };
 
 struct ScenarioResult {
