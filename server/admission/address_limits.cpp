@@ -25,7 +25,7 @@ bool AddressLimits::make_room(std::int64_t now_ns) {
   if (entries() + 2 <= options_.entries_max) return true;
   if (now_ns < next_sweep_ns_) return false;
   next_sweep_ns_ = now_ns + kSweepInterval_ns;
-  const auto says_nothing = [now_ns](auto& each) {
+  const auto says_nothing = [now_ns](const auto& each) {
     return each.second.open == 0 && each.second.connects.full(now_ns);
   };
   std::erase_if(hosts_, says_nothing);
@@ -35,7 +35,7 @@ bool AddressLimits::make_room(std::int64_t now_ns) {
 
 AddressLimits::Entry& AddressLimits::entry_of(Entries& entries, const PeerAddress& key, Rate rate,
                                               std::int64_t now_ns) {
-  return entries.try_emplace(key, Entry{RateBucket(rate, now_ns), 0, 0}).first->second;
+  return entries.try_emplace(key, Entry{RefillBucket(rate, now_ns), 0, 0}).first->second;
 }
 
 std::string AddressLimits::open(const PeerAddress& address, std::int64_t now_ns) {

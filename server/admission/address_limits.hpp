@@ -6,7 +6,7 @@
 #include <string>
 
 #include "server/admission/peer_address.hpp"
-#include "server/admission/rate_bucket.hpp"
+#include "server/admission/refill_bucket.hpp"
 
 namespace cycloid::server {
 
@@ -41,7 +41,7 @@ class AddressLimits {
 
  private:
   struct Entry {
-    RateBucket connects;
+    RefillBucket connects;
     std::uint32_t open = 0;
     std::uint32_t pending = 0;
   };
@@ -51,7 +51,7 @@ class AddressLimits {
   Entry& entry_of(Entries& entries, const PeerAddress& key, Rate rate, std::int64_t now_ns);
 
   AddressLimitOptions options_;
-  RateBucket all_connects_;
+  RefillBucket all_connects_;
   Entries hosts_;
   Entries networks_;
   std::int64_t next_sweep_ns_ = 0;

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <string>
 
-#include "server/admission/rate_bucket.hpp"
+#include "server/admission/refill_bucket.hpp"
 
 namespace cycloid::server {
 
@@ -33,8 +33,8 @@ class ConnectionRates {
 
  private:
   ConnectionRateOptions options_;
-  RateBucket messages_;
-  RateBucket bytes_;
+  RefillBucket messages_;
+  RefillBucket bytes_;
   std::uint64_t newest_tick_ = 0;
   std::array<std::uint8_t, kInputWindowTicks> inputs_{};  ///< By tick, modulo the window.
 };

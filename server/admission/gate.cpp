@@ -54,6 +54,20 @@ std::string words_of(RoomFound found, const std::string& room) {
   }
 }
 
+/// Feeds what belongs to the first message and takes it off `bytes`: first the size, then as much
+/// as it says.
+void feed_first(protocol::Framer& framer, std::span<const std::byte>& bytes) {
+  constexpr std::size_t kPrefix = protocol::Framer::kPrefixBytes;
+  const auto feed = [&](std::size_t wanted_bytes) {
+    const std::size_t count = std::min(bytes.size(), wanted_bytes);
+    (void)framer.feed(bytes.first(count));
+    bytes = bytes.subspan(count);
+  };
+  if (framer.held_bytes() < kPrefix) feed(kPrefix - framer.held_bytes());
+  if (framer.broken() || framer.held_bytes() < kPrefix) return;
+  feed(kPrefix + framer.announced_bytes() - framer.held_bytes());
+}
+
 }  // namespace
 
 Gate::Gate(GateOptions options, FindRoom find_room)
@@ -69,6 +83,10 @@ std::string Gate::full(const PeerAddress& address, std::int64_t now_ns) {
   if (pending() >= options_.pending_max)
     return std::to_string(options_.pending_max) + " connections wait for their hello already";
   return addresses_.open(address, now_ns);
+}
+
+std::string Gate::too_slow() const {
+  return "no hello within " + std::to_string(options_.hello_deadline_ns / 1'000'000) + " ms";
 }
 
 std::variant<GateId, GateRefused> Gate::begin(const PeerAddress& address, std::int64_t now_ns) {
@@ -87,27 +105,16 @@ GateResult Gate::feed(GateId id, std::span<const std::byte> bytes, const GateTim
   if (found == pending_.end())
     return refuse(Refusal::kBadMessage, "the connection has its answer already");
   if (now.now_ns >= found->second.deadline_ns)
-    return refuse_open(id, Refusal::kTooSlow, "no hello in time");
+    return refuse_open(id, Refusal::kTooSlow, too_slow());
   protocol::Framer& framer = found->second.framer;
-  // First the size, then as much as it says: what follows the hello is not the gate's.
-  const std::size_t prefix_bytes =
-      std::min(bytes.size(), protocol::Framer::kPrefixBytes -
-                                 std::min(framer.held_bytes(), protocol::Framer::kPrefixBytes));
-  if (!framer.feed(bytes.first(prefix_bytes))) {
+  feed_first(framer, bytes);
+  const auto payload = framer.next();
+  if (framer.broken()) {
     return refuse_open(id, Refusal::kTooLarge,
                        "a message of " + std::to_string(framer.announced_bytes()) +
                            " bytes, of 1 to " + std::to_string(protocol::kHelloBytesMax));
   }
-  bytes = bytes.subspan(prefix_bytes);
-  if (framer.held_bytes() < protocol::Framer::kPrefixBytes) return GateWaiting{};
-  const std::size_t missing_bytes =
-      protocol::Framer::kPrefixBytes + framer.announced_bytes() - framer.held_bytes();
-  const std::size_t taken_bytes = std::min(bytes.size(), missing_bytes);
-  (void)framer.feed(bytes.first(taken_bytes));
-  bytes = bytes.subspan(taken_bytes);
-  const auto payload = framer.next();
   if (!payload) return GateWaiting{};
-
   const auto decoded = protocol::decode_client(*payload);
   if (!decoded.message)
     return refuse_open(id, Refusal::kBadMessage, "not a message: " + decoded.error);
@@ -203,9 +210,7 @@ std::vector<GateOverdue> Gate::overdue(std::int64_t now_ns) {
   std::vector<GateOverdue> over;
   while (!pending_.empty() && pending_.begin()->second.deadline_ns <= now_ns) {
     const GateId id = pending_.begin()->first;
-    const std::string reason =
-        "no hello within " + std::to_string(options_.hello_deadline_ns / 1'000'000) + " ms";
-    over.push_back({id, refuse_open(id, Refusal::kTooSlow, reason)});
+    over.push_back({id, refuse_open(id, Refusal::kTooSlow, too_slow())});
   }
   return over;
 }

@@ -34,7 +34,7 @@ struct GateOptions {
   std::int64_t leeway_s = 30;
   std::size_t nonces_max = 65536;
   std::int64_t hello_deadline_ns = 5'000'000'000;  ///< From `begin`, handshake of TLS included.
-  std::size_t pending_max = 4096;                  ///< Connections whose hello is not accepted.
+  std::size_t pending_max = 12000;                 ///< Connections whose hello is not accepted.
   std::size_t connections_max = 16384;             ///< Those and the admitted ones.
   AddressLimitOptions addresses;
 };
@@ -83,7 +83,7 @@ struct GateOverdue {
 struct GateCounts {
   std::uint64_t begun = 0;
   std::uint64_t admitted = 0;
-  std::array<std::uint64_t, static_cast<std::size_t>(protocol::Refusal::kLast) + 1> refused{};
+  std::array<std::uint64_t, static_cast<std::size_t>(protocol::kLastRefusal) + 1> refused{};
 };
 
 /// Stands before all rooms: takes bytes of connections until each has said who it is, and touches
@@ -140,6 +140,7 @@ class Gate {
   };
 
   std::string full(const PeerAddress& address, std::int64_t now_ns);
+  std::string too_slow() const;
   std::variant<Admission, Fault> judge(const protocol::Hello& hello, const PeerAddress& address,
                                        const GateTime& now);
   std::optional<Fault> check_token(const GateTime& now, Admission& admission,

@@ -55,7 +55,7 @@ const char* refusal_name(protocol::Refusal code) {
       "kNoSuchRoom",      "kRoomLocked",    "kRateLimited",  "kKicked",    "kReplaced",
       "kResumeUnknown",   "kResyncLimit",
   };
-  static_assert(kNames.size() == static_cast<std::size_t>(protocol::Refusal::kLast));
+  static_assert(kNames.size() == static_cast<std::size_t>(protocol::kLastRefusal));
   const auto number = static_cast<std::size_t>(code);
   return number >= 1 && number <= kNames.size() ? kNames[number - 1] : "an unknown code";
 }

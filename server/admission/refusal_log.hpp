@@ -8,7 +8,7 @@
 
 #include "protocol/messages.hpp"
 #include "server/admission/peer_address.hpp"
-#include "server/admission/rate_bucket.hpp"
+#include "server/admission/refill_bucket.hpp"
 
 namespace cycloid::server {
 
@@ -41,7 +41,7 @@ class RefusalLog {
   Cause* cause_of(protocol::Refusal code, const PeerAddress& address, std::int64_t now_ns);
 
   RefusalLogOptions options_;
-  RateBucket lines_;
+  RefillBucket lines_;
   std::map<std::pair<protocol::Refusal, PeerAddress>, Cause> causes_;
   std::int64_t next_sweep_ns_ = 0;
   std::uint64_t suppressed_elsewhere_ = 0;  ///< Of causes that are not remembered.

@@ -28,7 +28,7 @@ ResumeBook::Hash ResumeBook::hash_of(std::span<const std::byte> token) const {
 ResumeToken ResumeBook::issue(std::int32_t seat) {
   ResumeToken token{};
   random_(token);
-  entries_[seat] = Entry{hash_of(token), {}};
+  entries_[seat] = Entry{hash_of(token), {}, {}};
   return token;
 }
 
@@ -37,18 +37,29 @@ void ResumeBook::let_expire(std::int32_t seat, std::int64_t at_ns) {
   if (entry != entries_.end()) entry->second.expires_ns = at_ns;
 }
 
+void ResumeBook::confirm(std::int32_t seat) {
+  const auto entry = entries_.find(seat);
+  if (entry != entries_.end()) entry->second.used.reset();
+}
+
 std::optional<ResumeBook::Resumed> ResumeBook::redeem(std::span<const std::byte> token,
                                                       std::int64_t now_ns) {
   if (token.size() != protocol::kResumeBytes) return {};
   const Hash hash = hash_of(token);
+  const auto same = [&](const Hash& ours) {
+    return sodium_memcmp(ours.data(), hash.data(), hash.size()) == 0;
+  };
   std::optional<std::int32_t> seat;
   for (const auto& [each, entry] : entries_) {
-    const bool same = sodium_memcmp(entry.hash.data(), hash.data(), hash.size()) == 0;
+    const bool is_next = same(entry.next);
+    const bool is_used = entry.used && same(*entry.used);
     const bool lives = !entry.expires_ns || now_ns <= *entry.expires_ns;
-    if (same && lives) seat = each;
+    if ((is_next || is_used) && lives) seat = each;
   }
   if (!seat) return {};
-  return Resumed{*seat, issue(*seat)};
+  const ResumeToken next = issue(*seat);
+  entries_[*seat].used = hash;
+  return Resumed{*seat, next};
 }
 
 }  // namespace cycloid::server

@@ -14,26 +14,26 @@ struct Rate {
 
 /// A token bucket, in integers: of any interval of t ns no more is taken than burst + rate * t, and
 /// no less is granted, however often it is asked. A clock that goes back stands still.
-class RateBucket {
+class RefillBucket {
  public:
-  RateBucket(Rate rate, std::int64_t now_ns)
+  RefillBucket(Rate rate, std::int64_t now_ns)
       : rate_(rate), level_(std::uint64_t{rate.burst} * kPerUnit), filled_ns_(now_ns) {}
 
   /// Whether `count` may go now; takes nothing.
-  bool has(std::uint32_t count, std::int64_t now_ns) {
-    fill(now_ns);
-    return rate_.per_s == 0 || std::uint64_t{count} * kPerUnit <= level_;
+  bool has(std::uint32_t count, std::int64_t now_ns) const {
+    return rate_.per_s == 0 || std::uint64_t{count} * kPerUnit <= level_at(now_ns);
   }
   /// Whether `count` may go now, and then it has gone. Else nothing is taken.
   bool take(std::uint32_t count, std::int64_t now_ns) {
     if (!has(count, now_ns)) return false;
-    if (rate_.per_s != 0) level_ -= std::uint64_t{count} * kPerUnit;
+    if (rate_.per_s == 0) return true;
+    level_ = level_at(now_ns) - std::uint64_t{count} * kPerUnit;
+    filled_ns_ = std::max(filled_ns_, now_ns);
     return true;
   }
   /// Whether it is as good as a new one, so that forgetting it gives nothing away.
-  bool full(std::int64_t now_ns) {
-    fill(now_ns);
-    return rate_.per_s == 0 || level_ == capacity();
+  bool full(std::int64_t now_ns) const {
+    return rate_.per_s == 0 || level_at(now_ns) == capacity();
   }
 
  private:
@@ -41,18 +41,13 @@ class RateBucket {
   static constexpr std::uint64_t kPerUnit = 1'000'000'000;
 
   std::uint64_t capacity() const { return std::uint64_t{rate_.burst} * kPerUnit; }
-  void fill(std::int64_t now_ns) {
-    if (now_ns <= filled_ns_ || rate_.per_s == 0) return;
+  std::uint64_t level_at(std::int64_t now_ns) const {
+    if (now_ns <= filled_ns_) return level_;
     const auto elapsed_ns =
         static_cast<std::uint64_t>(now_ns) - static_cast<std::uint64_t>(filled_ns_);
-    filled_ns_ = now_ns;
     const std::uint64_t missing = capacity() - level_;
     // By division first: the product of a long time and a high rate does not fit.
-    if (elapsed_ns > missing / rate_.per_s) {
-      level_ = capacity();
-    } else {
-      level_ += elapsed_ns * rate_.per_s;
-    }
+    return elapsed_ns > missing / rate_.per_s ? capacity() : level_ + elapsed_ns * rate_.per_s;
   }
 
   Rate rate_;
