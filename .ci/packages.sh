@@ -7,6 +7,7 @@ packages=(
   nlohmann-json3-dev libflatbuffers-dev     # scenes and protocol: JSON; binary forms
   flatbuffers-compiler
   libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
+  libssl-dev libsodium-dev                 # TLS; signed tokens
   libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
   librapidcheck-dev                         # tests of properties: random cases that shrink
   python3                                   # scripts that measure and that read objects
