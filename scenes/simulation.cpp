@@ -5,6 +5,7 @@
 #include "scenes/build.hpp"
 #include "scenes/characters.hpp"
 #include "scenes/controls.hpp"
+#include "solver/encoding.hpp"
 #include "solver/floating_point_mode.hpp"
 
 namespace cycloid::scenes {
@@ -110,6 +111,11 @@ std::optional<solver::Fault> Simulation::fault() const {
 
 void Simulation::encode(std::vector<std::byte>& into) const {
   running_->visit([&](const auto& built) { built.world.encode(into); });
+}
+
+std::size_t Simulation::encoded_bytes() const {
+  return running_->visit(
+      [](const auto& built) { return solver::encoded_bytes(built.world.state()); });
 }
 
 /// The registers hold places in rings and characters; a snapshot from outside may name a place that
@@ -219,6 +225,24 @@ static solver::WorldState<3>& part_of(solver::WorldState<2>&, solver::WorldState
 void Simulation::save(Saved& into) const {
   running_->visit([&](const auto& built) {
     built.world.save(part_of(into.state_->planar, into.state_->spatial, built));
+  });
+}
+
+std::uint64_t Simulation::tick(const Saved& saved) const {
+  return running_->visit([&](const auto& built) {
+    return part_of(saved.state_->planar, saved.state_->spatial, built).header.tick;
+  });
+}
+
+std::uint64_t Simulation::digest(const Saved& saved) const {
+  return running_->visit([&](const auto& built) {
+    return solver::digest_state(part_of(saved.state_->planar, saved.state_->spatial, built));
+  });
+}
+
+void Simulation::encode(const Saved& saved, std::vector<std::byte>& into) const {
+  running_->visit([&](const auto& built) {
+    solver::encode_state(part_of(saved.state_->planar, saved.state_->spatial, built), into);
   });
 }
 

@@ -73,6 +73,7 @@ class Simulation {
   std::uint64_t digest() const;
   std::optional<solver::Fault> fault() const;
   void encode(std::vector<std::byte>& into) const;
+  std::size_t encoded_bytes() const;  ///< How many that would be, without making them.
   solver::Error decode(std::span<const std::byte> bytes);
   solver::Statistics statistics() const;
   std::vector<Pose> poses() const;
@@ -101,6 +102,11 @@ class Simulation {
   void save(Saved& into) const;
   /// @pre `from` was saved from a simulation of the same scene.
   void restore(const Saved& from);
+  /// `tick`, `digest` and `encode` of what was saved, while this simulation is elsewhere.
+  /// @pre as for `restore`, for all three.
+  std::uint64_t tick(const Saved& saved) const;
+  std::uint64_t digest(const Saved& saved) const;
+  void encode(const Saved& saved, std::vector<std::byte>& into) const;
 
  private:
   struct Running;
