@@ -16,14 +16,6 @@ std::string index_text(std::uint32_t index) {
 }
 
 template <int D>
-std::string about(const WorldState<D>&, const Body<D>& body) {
-  return "generation " + std::to_string(body.generation);
-}
-template <int D>
-std::string about(const WorldState<D>&, const Particle<D>& particle) {
-  return "generation " + std::to_string(particle.generation);
-}
-template <int D>
 std::string about(const WorldState<D>&, const Joint<D>& joint) {
   return "bodies " + index_text(joint.body_a) + " and " + index_text(joint.body_b);
 }
@@ -38,6 +30,12 @@ std::string about(const WorldState<D>& state, const Contact<D>& contact) {
 template <int D, class R>
 std::string about(const WorldState<D>&, const R&) {
   return "";
+}
+
+template <class R>
+std::uint32_t generation_of(const R& record) {
+  if constexpr (requires { record.generation; }) return record.generation;
+  return 0;
 }
 
 template <int D>
@@ -74,14 +72,13 @@ class Comparison {
   void array(const char* kind, const std::vector<R>& a, const std::vector<R>& b) {
     const std::size_t common = std::min(a.size(), b.size());
     for (std::size_t i = 0; i < common; ++i) records(kind, i, a[i], b[i]);
-    for (std::size_t i = common; i < a.size(); ++i) only(kind, i, about(a_, a[i]), true);
-    for (std::size_t i = common; i < b.size(); ++i) only(kind, i, about(b_, b[i]), false);
+    for (std::size_t i = common; i < a.size(); ++i) only(kind, i, a_, a[i]);
+    for (std::size_t i = common; i < b.size(); ++i) only(kind, i, b_, b[i]);
   }
 
   /// A contact more or less moves all behind it, so they are matched by their shapes, in whose
   /// order they are listed. A list in another order comes from no world, and ends up as absent.
-  void array(const char* kind, const std::vector<Contact<D>>& a,
-             const std::vector<Contact<D>>& b) {
+  void array(const char* kind, const std::vector<Contact<D>>& a, const std::vector<Contact<D>>& b) {
     const auto before = [](const Contact<D>& x, const Contact<D>& y) {
       return x.shape_a != y.shape_a ? x.shape_a < y.shape_a : x.shape_b < y.shape_b;
     };
@@ -89,14 +86,15 @@ class Comparison {
     std::size_t j = 0;
     while (i < a.size() || j < b.size()) {
       if (j == b.size() || (i < a.size() && before(a[i], b[j]))) {
-        only(kind, i, about(a_, a[i]), true);
+        only(kind, i, a_, a[i]);
         ++i;
       } else if (i == a.size() || before(b[j], a[i])) {
-        only(kind, j, about(b_, b[j]), false);
+        only(kind, j, b_, b[j]);
         ++j;
       } else {
         records(kind, i, a[i], b[j]);
-        ++i, ++j;
+        ++i;
+        ++j;
       }
     }
   }
@@ -119,18 +117,22 @@ class Comparison {
     const std::vector<NamedWord> named_b = words_of(b);
     for (const std::size_t place : places_) {
       if (compared_.first.size() >= limit_) return;
-      compared_.first.push_back({kind, static_cast<std::uint32_t>(slot), about(a_, a),
-                                 named_a[place].name, named_a[place].text, named_b[place].text,
+      compared_.first.push_back({kind, static_cast<std::uint32_t>(slot), generation_of(a),
+                                 about(a_, a), named_a[place].name, named_a[place].text,
+                                 named_b[place].text,
                                  std::popcount(named_a[place].bits ^ named_b[place].bits)});
     }
   }
 
-  void only(const char* kind, std::size_t slot, std::string whose, bool has_a) {
+  template <class R>
+  void only(const char* kind, std::size_t slot, const WorldState<D>& whose, const R& record) {
+    const bool has_a = &whose == &a_;
     ++compared_.count;
     ++compared_.objects;
     if (compared_.first.size() >= limit_) return;
-    compared_.first.push_back({kind, static_cast<std::uint32_t>(slot), std::move(whose), "",
-                               has_a ? "present" : "absent", has_a ? "absent" : "present", 0});
+    compared_.first.push_back({kind, static_cast<std::uint32_t>(slot), generation_of(record),
+                               about(whose, record), "", has_a ? "present" : "absent",
+                               has_a ? "absent" : "present", 0});
   }
 
   const WorldState<D>& a_;

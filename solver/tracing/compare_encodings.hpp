@@ -14,9 +14,10 @@ namespace cycloid::solver {
 struct EncodedDifference {
   std::string kind;        ///< "body", "joint", "contact", "register", "particle", "world", ...
   std::uint32_t slot = 0;  ///< Of that kind; of a contact its place in the first state that has it.
-  std::string about;       ///< "generation 1", "bodies 2 and 5", or "".
-  std::string field;       ///< "position[0]"; "" where only one state has the object.
-  std::string value_a;     ///< Decimal, and the bits in hexadecimal; "absent".
+  std::uint32_t generation = 0;
+  std::string about;    ///< "bodies 2 and 5", or "".
+  std::string field;    ///< "position[0]"; "" where only one state has the object.
+  std::string value_a;  ///< Decimal, and the bits in hexadecimal; "absent".
   std::string value_b;
   int bits = 0;  ///< How many bits of the number differ; 0 where only one state has it.
 
@@ -34,7 +35,8 @@ struct EncodingsCompared {
 /// causes comes before what it makes: registers, joints, contacts, then bodies. Contacts are the
 /// same where they are of the same two shapes, wherever they stand in the list.
 /// @param limit  How many differences to name at most.
-/// @returns kCorrupt "bytes" where one of them, and kInvalid "dimension" where not both, are states.
+/// @returns kCorrupt "bytes" where one of them, and kInvalid "dimension" where not both, are
+/// states.
 Result<EncodingsCompared> compare_encodings(std::span<const std::byte> a,
                                             std::span<const std::byte> b, std::size_t limit);
 
