@@ -82,6 +82,7 @@ class Follower {
   virtual void on_snapshot(const protocol::Snapshot& snapshot, Outbox& out) = 0;
   virtual void on_frame(const protocol::InputFrame& frame, Outbox& out) = 0;
   virtual void on_digest(const protocol::Digest& digest, Outbox& out) = 0;
+  virtual void on_state_wanted(const protocol::StateWanted&) {}
 
   void fail(std::string reason);
   /// Puts the snapshot in place of the state; false, and the session has failed, if it is not one.

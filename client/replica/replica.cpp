@@ -11,6 +11,7 @@ void Replica::on_snapshot(const protocol::Snapshot& snapshot, Outbox& out) {
   if (!load(snapshot)) return;
   if (diverged_) ++progress_.resyncs;
   diverged_ = false;
+  evidence_.replaced(snapshot.tick);
   compare_waiting(out);
   send_inputs(snapshot.tick + input_delay(), out);
 }
@@ -25,6 +26,7 @@ void Replica::on_frame(const protocol::InputFrame& frame, Outbox& out) {
 
   inputs_.clear();
   for (const protocol::SeatFrame& seat : frame.seats) inputs_.push_back(seat.input);
+  evidence_.record(simulation_);
   if (const solver::Error error = simulation_.step(inputs_); !error.ok()) {
     return fail("the world does not step to tick " + std::to_string(frame.tick) + ": " +
                 solver::code_name(error.code) + " " + error.field);
@@ -32,6 +34,7 @@ void Replica::on_frame(const protocol::InputFrame& frame, Outbox& out) {
   progress_.last_tick = frame.tick;
   count_frame(frame);
   compare_waiting(out);
+  evidence_.send_parts(out);
   send_inputs(frame.tick + input_delay(), out);
 }
 
@@ -45,6 +48,10 @@ void Replica::on_digest(const protocol::Digest& digest, Outbox& out) {
   compare_waiting(out);
 }
 
+void Replica::on_state_wanted(const protocol::StateWanted& wanted) {
+  evidence_.wanted(wanted.tick, simulation_);
+}
+
 void Replica::compare_waiting(Outbox& out) {
   while (!waiting_.empty() && waiting_.front().tick <= simulation_.tick()) {
     const protocol::Digest theirs = waiting_.front();
@@ -53,11 +60,15 @@ void Replica::compare_waiting(Outbox& out) {
 
     const protocol::Digest mine{theirs.tick, simulation_.digest()};
     ++progress_.digests_compared;
-    if (mine.digest != theirs.digest) {
-      ++progress_.mismatches;
-      diverged_ = true;
-    }
     out.emplace_back(mine);
+    if (mine.digest == theirs.digest) {
+      evidence_.agreed(theirs.tick);
+      continue;
+    }
+    ++progress_.mismatches;
+    diverged_ = true;
+    evidence_.record(simulation_);
+    evidence_.diverged(theirs.tick, simulation_, out);
   }
 }
 

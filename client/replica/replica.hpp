@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "client/replica/evidence.hpp"
 #include "client/replica/follower.hpp"
 
 namespace cycloid::client {
@@ -28,11 +29,13 @@ class Replica final : public Follower {
   void on_snapshot(const protocol::Snapshot& snapshot, Outbox& out) override;
   void on_frame(const protocol::InputFrame& frame, Outbox& out) override;
   void on_digest(const protocol::Digest& digest, Outbox& out) override;
+  void on_state_wanted(const protocol::StateWanted& wanted) override;
   void compare_waiting(Outbox& out);
 
   std::deque<protocol::Digest> waiting_;  ///< Of the server, ticks ascending.
   std::vector<scenes::SeatInput> inputs_;
   bool diverged_ = false;
+  Evidence evidence_;
 };
 
 }  // namespace cycloid::client

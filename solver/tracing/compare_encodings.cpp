@@ -1,7 +1,6 @@
 #include "solver/tracing/compare_encodings.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <string_view>
 
 #include "solver/encoding.hpp"
@@ -120,7 +119,7 @@ class Comparison {
       compared_.first.push_back({kind, static_cast<std::uint32_t>(slot), generation_of(a),
                                  about(a_, a), named_a[place].name, named_a[place].text,
                                  named_b[place].text,
-                                 std::popcount(named_a[place].bits ^ named_b[place].bits)});
+                                 named_a[place].bits, named_b[place].bits});
     }
   }
 
@@ -132,7 +131,7 @@ class Comparison {
     if (compared_.first.size() >= limit_) return;
     compared_.first.push_back({kind, static_cast<std::uint32_t>(slot), generation_of(record),
                                about(whose, record), "", has_a ? "present" : "absent",
-                               has_a ? "absent" : "present", 0});
+                               has_a ? "absent" : "present", 0, 0});
   }
 
   const WorldState<D>& a_;

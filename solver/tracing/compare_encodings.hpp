@@ -19,7 +19,8 @@ struct EncodedDifference {
   std::string field;    ///< "position[0]"; "" where only one state has the object.
   std::string value_a;  ///< Decimal, and the bits in hexadecimal; "absent".
   std::string value_b;
-  int bits = 0;  ///< How many bits of the number differ; 0 where only one state has it.
+  std::uint64_t bits_a = 0;  ///< As integers; both 0 where only one state has the object.
+  std::uint64_t bits_b = 0;
 
   std::string object() const { return kind + " " + std::to_string(slot); }
 };

@@ -1,0 +1,93 @@
+#include "client/replica/evidence.hpp"
+
+#include <algorithm>
+#include <utility>
+
+namespace cycloid::client {
+
+void Evidence::record(const scenes::Simulation& confirmed) {
+  const std::uint64_t tick = confirmed.tick();
+  forget_from(tick);
+  const std::size_t bytes = confirmed.encoded_bytes();
+  while (!ring_.empty() &&
+         (ring_.size() >= options_.ticks_max || bytes_ + bytes > options_.bytes_max)) {
+    forget(std::move(ring_.front()));
+    ring_.pop_front();
+  }
+  if (bytes > options_.bytes_max) return;
+  Kept kept;
+  if (!spare_.empty()) {
+    kept = std::move(spare_.back());
+    spare_.clear();
+  }
+  kept.tick = tick;
+  kept.bytes = bytes;
+  confirmed.save(kept.state);
+  bytes_ += bytes;
+  ring_.push_back(std::move(kept));
+}
+
+void Evidence::forget(Kept&& kept) {
+  bytes_ -= kept.bytes;
+  spare_.clear();
+  spare_.push_back(std::move(kept));
+}
+
+const Evidence::Kept* Evidence::find(std::uint64_t tick) const {
+  const auto found = std::ranges::find(ring_, tick, &Kept::tick);
+  return found == ring_.end() ? nullptr : &*found;
+}
+
+void Evidence::replaced(std::uint64_t tick) {
+  forget_from(tick);
+  agreed_tick_ = tick;
+}
+
+void Evidence::forget_from(std::uint64_t tick) {
+  for (; !ring_.empty() && ring_.back().tick >= tick; ring_.pop_back())
+    forget(std::move(ring_.back()));
+}
+
+void Evidence::diverged(std::uint64_t tick, const scenes::Simulation& simulation,
+                        std::vector<protocol::ClientMessage>& out) {
+  // A gap (a snapshot that was further on) ends what can be told in one row.
+  std::vector<const Kept*> row;
+  for (auto kept = ring_.rbegin(); kept != ring_.rend(); ++kept) {
+    if (kept->tick > tick) continue;
+    if (kept->tick + row.size() != tick) break;
+    row.push_back(&*kept);
+    if (kept->tick <= agreed_tick_) break;
+  }
+  std::ranges::reverse(row);
+  open_ = !row.empty();
+  for (std::size_t i = 0; i < row.size(); i += protocol::kTickDigestsMax) {
+    protocol::TickDigests digests{row[i]->tick, {}};
+    const std::size_t end = std::min(row.size(), i + protocol::kTickDigestsMax);
+    for (std::size_t j = i; j < end; ++j)
+      digests.digests.push_back(simulation.digest(row[j]->state));
+    out.emplace_back(std::move(digests));
+  }
+}
+
+void Evidence::wanted(std::uint64_t tick, const scenes::Simulation& simulation) {
+  const Kept* kept = find(tick);
+  if (!std::exchange(open_, false) || kept == nullptr) return;
+  sending_tick_ = tick;
+  sent_bytes_ = 0;
+  simulation.encode(kept->state, sending_);
+}
+
+void Evidence::send_parts(std::vector<protocol::ClientMessage>& out) {
+  for (std::size_t i = 0; i < options_.parts_per_tick && !sending_.empty(); ++i) {
+    const std::size_t size = std::min(protocol::kStatePartBytesMax, sending_.size() - sent_bytes_);
+    const auto* first = sending_.data() + sent_bytes_;
+    out.emplace_back(protocol::StatePart{sending_tick_,
+                                         static_cast<std::uint32_t>(sending_.size()),
+                                         static_cast<std::uint32_t>(sent_bytes_),
+                                         {first, first + size}});
+    sent_bytes_ += size;
+    if (sent_bytes_ == sending_.size()) sending_ = {};
+  }
+}
+
+}  // namespace cycloid::client
