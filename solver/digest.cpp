@@ -18,6 +18,19 @@ std::uint64_t digest_state(const WorldState<D>& state) {
 }
 
 template <int D>
+static std::optional<std::uint64_t> digest_as(std::span<const std::byte> bytes) {
+  WorldState<D> state;
+  if (!read_state(bytes, state)) return std::nullopt;
+  return digest_state(state);
+}
+
+std::optional<std::uint64_t> digest_encoding(std::span<const std::byte> bytes) {
+  const int dimension = encoded_dimension(bytes);
+  if (dimension == 0) return std::nullopt;
+  return dimension == 2 ? digest_as<2>(bytes) : digest_as<3>(bytes);
+}
+
+template <int D>
 std::uint64_t World<D>::digest() const {
   return digest_state(state_);
 }

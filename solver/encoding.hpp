@@ -2,6 +2,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -33,5 +34,8 @@ bool read_state(std::span<const std::byte> bytes, WorldState<D>& state);
 
 /// 2 or 3, as the bytes begin; 0 where they begin as no encoding of this solver.
 int encoded_dimension(std::span<const std::byte> bytes);
+
+/// The digest of an encoding, whatever it holds; none where `read_state` would fail.
+std::optional<std::uint64_t> digest_encoding(std::span<const std::byte> bytes);
 
 }  // namespace cycloid::solver
