@@ -21,6 +21,7 @@ struct Simulation::Running {
 };
 
 struct Simulation::Saved::State {
+  int dimension = 0;  ///< Which of the two was saved.
   solver::WorldState<2> planar;
   solver::WorldState<3> spatial;
 };
@@ -29,6 +30,18 @@ Simulation::Saved::Saved() : state_(std::make_unique<State>()) {}
 Simulation::Saved::~Saved() = default;
 Simulation::Saved::Saved(Saved&&) noexcept = default;
 Simulation::Saved& Simulation::Saved::operator=(Saved&&) noexcept = default;
+
+std::uint64_t Simulation::Saved::digest() const {
+  return state_->dimension == 2 ? solver::digest_state(state_->planar)
+                                : solver::digest_state(state_->spatial);
+}
+
+void Simulation::Saved::encode(std::vector<std::byte>& into) const {
+  if (state_->dimension == 2)
+    solver::encode_state(state_->planar, into);
+  else
+    solver::encode_state(state_->spatial, into);
+}
 
 Simulation::Simulation(std::unique_ptr<Running> running) : running_(std::move(running)) {}
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -223,26 +236,9 @@ static solver::WorldState<3>& part_of(solver::WorldState<2>&, solver::WorldState
 }
 
 void Simulation::save(Saved& into) const {
+  into.state_->dimension = dimension();
   running_->visit([&](const auto& built) {
     built.world.save(part_of(into.state_->planar, into.state_->spatial, built));
-  });
-}
-
-std::uint64_t Simulation::tick(const Saved& saved) const {
-  return running_->visit([&](const auto& built) {
-    return part_of(saved.state_->planar, saved.state_->spatial, built).header.tick;
-  });
-}
-
-std::uint64_t Simulation::digest(const Saved& saved) const {
-  return running_->visit([&](const auto& built) {
-    return solver::digest_state(part_of(saved.state_->planar, saved.state_->spatial, built));
-  });
-}
-
-void Simulation::encode(const Saved& saved, std::vector<std::byte>& into) const {
-  running_->visit([&](const auto& built) {
-    solver::encode_state(part_of(saved.state_->planar, saved.state_->spatial, built), into);
   });
 }
 

@@ -93,6 +93,9 @@ class Simulation {
     ~Saved();
     Saved(Saved&&) noexcept;
     Saved& operator=(Saved&&) noexcept;
+    /// Of the simulation when it was saved. @pre something was.
+    std::uint64_t digest() const;
+    void encode(std::vector<std::byte>& into) const;
 
    private:
     friend class Simulation;
@@ -102,11 +105,6 @@ class Simulation {
   void save(Saved& into) const;
   /// @pre `from` was saved from a simulation of the same scene.
   void restore(const Saved& from);
-  /// `tick`, `digest` and `encode` of what was saved, while this simulation is elsewhere.
-  /// @pre as for `restore`, for all three.
-  std::uint64_t tick(const Saved& saved) const;
-  std::uint64_t digest(const Saved& saved) const;
-  void encode(const Saved& saved, std::vector<std::byte>& into) const;
 
  private:
   struct Running;

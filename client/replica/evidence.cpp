@@ -5,7 +5,12 @@
 
 namespace cycloid::client {
 
-void Evidence::record(const scenes::Simulation& confirmed) {
+void Evidence::leaving(const scenes::Simulation& confirmed, Outbox& out) {
+  keep(confirmed);
+  send_parts(out);
+}
+
+void Evidence::keep(const scenes::Simulation& confirmed) {
   const std::uint64_t tick = confirmed.tick();
   forget_from(tick);
   const std::size_t bytes = confirmed.encoded_bytes();
@@ -38,9 +43,9 @@ const Evidence::Kept* Evidence::find(std::uint64_t tick) const {
   return found == ring_.end() ? nullptr : &*found;
 }
 
-void Evidence::replaced(std::uint64_t tick) {
-  forget_from(tick);
-  agreed_tick_ = tick;
+void Evidence::replaced(const scenes::Simulation& simulation) {
+  agreed_tick_ = simulation.tick();
+  forget_from(agreed_tick_);
 }
 
 void Evidence::forget_from(std::uint64_t tick) {
@@ -48,8 +53,7 @@ void Evidence::forget_from(std::uint64_t tick) {
     forget(std::move(ring_.back()));
 }
 
-void Evidence::diverged(std::uint64_t tick, const scenes::Simulation& simulation,
-                        std::vector<protocol::ClientMessage>& out) {
+void Evidence::diverged(std::uint64_t tick, Outbox& out) {
   // A gap (a snapshot that was further on) ends what can be told in one row.
   std::vector<const Kept*> row;
   for (auto kept = ring_.rbegin(); kept != ring_.rend(); ++kept) {
@@ -63,21 +67,20 @@ void Evidence::diverged(std::uint64_t tick, const scenes::Simulation& simulation
   for (std::size_t i = 0; i < row.size(); i += protocol::kTickDigestsMax) {
     protocol::TickDigests digests{row[i]->tick, {}};
     const std::size_t end = std::min(row.size(), i + protocol::kTickDigestsMax);
-    for (std::size_t j = i; j < end; ++j)
-      digests.digests.push_back(simulation.digest(row[j]->state));
+    for (std::size_t j = i; j < end; ++j) digests.digests.push_back(row[j]->state.digest());
     out.emplace_back(std::move(digests));
   }
 }
 
-void Evidence::wanted(std::uint64_t tick, const scenes::Simulation& simulation) {
-  const Kept* kept = find(tick);
+void Evidence::wanted(const protocol::StateWanted& wanted, Outbox&) {
+  const Kept* kept = find(wanted.tick);
   if (!std::exchange(open_, false) || kept == nullptr) return;
-  sending_tick_ = tick;
+  sending_tick_ = wanted.tick;
   sent_bytes_ = 0;
-  simulation.encode(kept->state, sending_);
+  kept->state.encode(sending_);
 }
 
-void Evidence::send_parts(std::vector<protocol::ClientMessage>& out) {
+void Evidence::send_parts(Outbox& out) {
   for (std::size_t i = 0; i < options_.parts_per_tick && !sending_.empty(); ++i) {
     const std::size_t size = std::min(protocol::kStatePartBytesMax, sending_.size() - sent_bytes_);
     const auto* first = sending_.data() + sent_bytes_;

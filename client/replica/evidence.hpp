@@ -6,7 +6,7 @@
 #include <optional>
 #include <vector>
 
-#include "protocol/messages.hpp"
+#include "client/replica/witness.hpp"
 #include "scenes/simulation.hpp"
 
 namespace cycloid::client {
@@ -26,29 +26,22 @@ struct EvidenceOptions {
 /// A state is kept by copying its arrays: 5 us for 50 kB, where encoding takes 28 us and a digest
 /// 18 us. Both are made only once somebody asks. What is shown was never computed again, so that a
 /// flipped bit is seen.
-class Evidence {
+class Evidence final : public Witness {
  public:
   explicit Evidence(EvidenceOptions options = {}) : options_(options) {}
 
-  /// Keeps the confirmed state. Call it right before the step that leaves it, and before its digest
-  /// is compared: what befell it in between is then in it. Of one tick the last one counts; states
-  /// of later ticks, which a rewind has undone, are forgotten.
-  void record(const scenes::Simulation& confirmed);
-  /// My digest of this tick was the server's.
-  void agreed(std::uint64_t tick) { agreed_tick_ = tick; }
-  /// The server's exact state of this tick is in place of mine. Older ones are still shown where
-  /// they are asked for, but no mismatch to come began there.
-  void replaced(std::uint64_t tick);
-  /// My digest of this tick was not: appends TickDigests of the ticks that are kept, from the one
-  /// last agreed on to this one, and lets one StateWanted be answered.
-  /// @param simulation  Any of the scene's; it is only asked to read what was kept.
-  void diverged(std::uint64_t tick, const scenes::Simulation& simulation,
-                std::vector<protocol::ClientMessage>& out);
-  /// The server asks for the state after a tick. Says nothing where it is not kept, or where no
-  /// mismatch is open: an honest server asks once for each.
-  void wanted(std::uint64_t tick, const scenes::Simulation& simulation);
-  /// Appends the next StateParts of what was asked for. Call it once per tick.
-  void send_parts(std::vector<protocol::ClientMessage>& out);
+  /// Keeps the state: of one tick the last one counts, and states of later ticks, which a rewind
+  /// has undone, are forgotten. Appends the next StateParts of what was asked for.
+  void leaving(const scenes::Simulation& confirmed, Outbox& out) override;
+  void agreed(std::uint64_t tick) override { agreed_tick_ = tick; }
+  /// Older states are still shown where they are asked for, but no mismatch to come began there.
+  void replaced(const scenes::Simulation& simulation) override;
+  /// Appends TickDigests of the ticks that are kept, from the one last agreed on to this one, and
+  /// lets one StateWanted be answered.
+  void diverged(std::uint64_t tick, Outbox& out) override;
+  /// Says nothing where the state is not kept, or where no mismatch is open: an honest server asks
+  /// once for each. The parts are sent a few per tick, beside the inputs.
+  void wanted(const protocol::StateWanted& wanted, Outbox& out) override;
 
   std::size_t ticks() const { return ring_.size(); }
   std::size_t bytes() const { return bytes_; }
@@ -59,6 +52,8 @@ class Evidence {
     std::size_t bytes = 0;
     scenes::Simulation::Saved state;
   };
+  void keep(const scenes::Simulation& confirmed);
+  void send_parts(Outbox& out);
   void forget(Kept&& kept);
   void forget_from(std::uint64_t tick);
   const Kept* find(std::uint64_t tick) const;
