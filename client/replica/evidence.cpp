@@ -58,7 +58,7 @@ void Evidence::diverged(std::uint64_t tick, Outbox& out) {
   std::vector<const Kept*> row;
   for (auto kept = ring_.rbegin(); kept != ring_.rend(); ++kept) {
     if (kept->tick > tick) continue;
-    if (kept->tick + row.size() != tick) break;
+    if (kept->tick + row.size() != tick || kept->tick == 0) break;  // Tick 0 is the scene.
     row.push_back(&*kept);
     if (kept->tick <= agreed_tick_) break;
   }

@@ -133,7 +133,7 @@ std::optional<protocol::StateWanted> DesyncDesk::on_tick_digests(
 void DesyncDesk::differs_at(std::uint64_t tick, std::uint64_t mine, std::uint64_t theirs,
                             Inquiry& inquiry) {
   inquiry.stage = Stage::kState;
-  inquiry.finding.is_first = inquiry.equal_tick && *inquiry.equal_tick + 1 == tick;
+  inquiry.finding.is_first = tick == 1 || (inquiry.equal_tick && *inquiry.equal_tick + 1 == tick);
   inquiry.finding.server_digest = mine;
   inquiry.finding.client_digest = theirs;
   capture(tick, inquiry.finding);
@@ -180,7 +180,8 @@ std::vector<Finding> DesyncDesk::take_findings(std::int64_t now_ns, std::size_t 
     const ReplicaVotes now = votes(inquiry.finding.noticed_tick);
     if (now.replicas >= inquiry.finding.votes.replicas) inquiry.finding.votes = now;
     const bool counted = inquiry.finding.votes.replicas >= replicas;
-    const bool waits = !counted && open_ns < options_.votes_wait.count();
+    const bool around = history_.digest(inquiry.finding.tick + kTicksAround).has_value();
+    const bool waits = !(counted && around) && open_ns < options_.votes_wait.count();
     if (inquiry.stage != Stage::kDone || waits) {
       ++at;
       continue;

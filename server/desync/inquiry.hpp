@@ -20,8 +20,9 @@ struct DesyncDeskOptions {
   HistoryOptions history;
   std::size_t inquiries_max = 2;         ///< At a time; a peer has at most one.
   std::uint32_t findings_per_hour = 20;  ///< What is more is counted only.
-  std::chrono::nanoseconds deadline{std::chrono::seconds{10}};   ///< For all that a client sends.
-  std::chrono::nanoseconds votes_wait{std::chrono::seconds{1}};  ///< For the other replicas.
+  std::chrono::nanoseconds deadline{std::chrono::seconds{10}};  ///< For all that a client sends.
+  /// For the other replicas' digests, and for the ticks after the one that differs.
+  std::chrono::nanoseconds votes_wait{std::chrono::seconds{1}};
   /// A client's state may have twice the bytes of the server's and so many more.
   std::size_t state_slack_bytes = std::size_t{64} << 10;
 };

@@ -69,7 +69,7 @@ Json inputs_json(const protocol::LogTick& tick) {
           {"events", std::move(events)}};
 }
 
-Json sides_json(const DesyncReport& report, Json& json) {
+void add_sides_json(const DesyncReport& report, Json& json) {
   json["server"] = {{"build", report.room.build},
                     {"solver_version", solver::kSolverVersion},
                     {"digest", digest_text(report.server_digest)},
@@ -91,7 +91,6 @@ Json sides_json(const DesyncReport& report, Json& json) {
                    {"with_server", report.votes.with_server},
                    {"largest_other", report.votes.largest_other},
                    {"other_digest", digest_text(report.votes.other_digest)}};
-  return json;
 }
 
 }  // namespace
@@ -125,7 +124,7 @@ std::string report_json_text(const DesyncReport& report, const ReportFiles& file
   }
   json["values"] = Json::array();
   for (const ReportedValue& value : report.values) json["values"].push_back(value_json(value));
-  sides_json(report, json);
+  add_sides_json(report, json);
   json["verdict"] = report.verdict;
   json["notes"] = report.notes;
   json["inputs"] = Json::array();
