@@ -21,11 +21,12 @@ class MarginMeter {
   }
   void on_missed() { ++missed_; }
 
-  /// What to tell after `tick`: at most once in six ticks, or when something was missed; nothing
-  /// where nothing came and nothing was missed.
+  /// What to tell after `tick`: at most once in six ticks, or when something was missed or late;
+  /// nothing where nothing came and nothing was missed.
   std::optional<protocol::Margin> take(std::uint64_t tick) {
     if (!worst_ && missed_ == 0) return std::nullopt;
-    if (missed_ == 0 && tick - told_tick_ < kEveryTicks) return std::nullopt;
+    const bool in_time = missed_ == 0 && *worst_ >= 0;
+    if (in_time && tick - told_tick_ < kEveryTicks) return std::nullopt;
     const protocol::Margin margin{tick, worst_.value_or(0), merged_, missed_};
     *this = MarginMeter();
     told_tick_ = tick;

@@ -189,8 +189,9 @@ void Room::give_up_seat(Peer& peer, protocol::EventKind event) {
   const bool can_resume = hooks_.random && resume_ns > 0 && state_ == RoomState::kRunning;
   if (event == protocol::EventKind::kLost && !can_resume) event = protocol::EventKind::kLeave;
   if (event == protocol::EventKind::kLost) {
-    const std::int64_t ticks = (resume_ns + pacer_.tick_ns() - 1) / pacer_.tick_ns();
-    seats_.lose(seat, simulation_.tick() + static_cast<std::uint64_t>(ticks));
+    const std::int64_t ticks = (resume_ns + pacer_.tick_ns() / 2) / pacer_.tick_ns();
+    seats_.lose(seat,
+                simulation_.tick() + static_cast<std::uint64_t>(std::max<std::int64_t>(ticks, 1)));
   } else {
     seats_.free(seat);
     tokens_.forget(seat);
