@@ -8,13 +8,19 @@
 namespace cycloid::protocol {
 namespace {
 
-enum Part : std::uint8_t { kSeatCount = 1, kSeats = 2, kEvents = 4, kChanges = 8 };
-constexpr unsigned kAllParts = kSeatCount | kSeats | kEvents | kChanges;
+// The first byte behind the digest: what is not as before, and how many seats are among it.
+enum Part : std::uint8_t { kSeatCount = 1, kEvents = 2, kChanges = 4 };
+constexpr unsigned kSeatsShift = 3;
+constexpr unsigned kManySeats = 31;  ///< The number follows.
 
-// Bits of what has changed of a seat; the axes come first, a bit each.
+// The first byte of a seat: what has changed of it, the axes first, a bit each, and how many seats
+// before it have not.
 constexpr unsigned kButtonsBit = 1u << scenes::kAxes;
 constexpr unsigned kOriginBit = kButtonsBit << 1;
 constexpr unsigned kAllFields = (kOriginBit << 1) - 1;
+constexpr unsigned kSkipShift = 6;
+constexpr unsigned kManySkipped = 3;  ///< The number follows.
+static_assert(kAllFields < 1u << kSkipShift);
 
 constexpr std::size_t kChangesMax = 1024;
 constexpr std::size_t kPlaceBytes = 20;
@@ -60,9 +66,8 @@ unsigned changed_fields(const SeatFrame& before, const SeatFrame& now) {
   return fields;
 }
 
-void append_seat(const SeatFrame& before, const SeatFrame& now, unsigned fields,
-                 std::vector<std::byte>& into) {
-  append_little(static_cast<std::uint8_t>(fields), into);
+void append_fields(const SeatFrame& before, const SeatFrame& now, unsigned fields,
+                   std::vector<std::byte>& into) {
   for (std::size_t axis = 0; axis < now.input.axes.size(); ++axis)
     if ((fields & 1u << axis) != 0)
       append_varint(zigzag(before.input.axes[axis], now.input.axes[axis]), into);
@@ -71,11 +76,15 @@ void append_seat(const SeatFrame& before, const SeatFrame& now, unsigned fields,
   if ((fields & kOriginBit) != 0) append_little(static_cast<std::uint8_t>(now.origin), into);
 }
 
-void append_seats(const std::vector<SeatFrame>& before, const std::vector<SeatFrame>& now,
-                  std::vector<std::byte>& into) {
+std::uint32_t count_changed(const std::vector<SeatFrame>& before,
+                            const std::vector<SeatFrame>& now) {
   std::uint32_t changed = 0;
   for (std::size_t seat = 0; seat < now.size(); ++seat) changed += before[seat] != now[seat];
-  append_varint(changed, into);
+  return changed;
+}
+
+void append_seats(const std::vector<SeatFrame>& before, const std::vector<SeatFrame>& now,
+                  std::vector<std::byte>& into) {
   std::uint32_t skipped = 0;
   for (std::size_t seat = 0; seat < now.size(); ++seat) {
     const unsigned fields = changed_fields(before[seat], now[seat]);
@@ -83,9 +92,11 @@ void append_seats(const std::vector<SeatFrame>& before, const std::vector<SeatFr
       ++skipped;
       continue;
     }
-    append_varint(skipped, into);
+    const unsigned skip = std::min(skipped, kManySkipped);
+    append_little(static_cast<std::uint8_t>(fields | skip << kSkipShift), into);
+    if (skip == kManySkipped) append_varint(skipped, into);
     skipped = 0;
-    append_seat(before[seat], now[seat], fields, into);
+    append_fields(before[seat], now[seat], fields, into);
   }
 }
 
@@ -93,9 +104,8 @@ bool is_origin(Origin origin) {
   return origin >= Origin::kGiven && origin <= Origin::kNeutral;
 }
 
-void take_seat(LittleReader& reader, SeatFrame& seat) {
-  const unsigned fields = reader.take<std::uint8_t>();
-  reader.failed = reader.failed || fields == 0 || fields > kAllFields;
+void take_fields(LittleReader& reader, unsigned fields, SeatFrame& seat) {
+  reader.failed = reader.failed || fields == 0;
   for (std::size_t axis = 0; axis < seat.input.axes.size(); ++axis) {
     if ((fields & 1u << axis) == 0) continue;
     const std::uint32_t value = take_varint(reader);
@@ -113,18 +123,22 @@ void take_seat(LittleReader& reader, SeatFrame& seat) {
   seat.origin = origin;
 }
 
-void take_seats(LittleReader& reader, std::vector<SeatFrame>& seats) {
-  const std::uint32_t changed = take_varint(reader);
+void take_seats(LittleReader& reader, std::uint32_t changed, std::vector<SeatFrame>& seats) {
   std::size_t seat = 0;
-  reader.failed = reader.failed || changed == 0 || changed > seats.size();
+  reader.failed = reader.failed || changed > seats.size();
   for (std::uint32_t i = 0; i < changed && !reader.failed; ++i, ++seat) {
-    const std::uint32_t skipped = take_varint(reader);
+    const unsigned head = reader.take<std::uint8_t>();
+    std::uint32_t skipped = head >> kSkipShift;
+    if (skipped == kManySkipped) {
+      skipped = take_varint(reader);
+      reader.failed = reader.failed || skipped < kManySkipped;
+    }
     if (skipped >= seats.size() - seat) {  // `seat` is at most the size.
       reader.failed = true;
       return;
     }
     seat += skipped;
-    take_seat(reader, seats[seat]);
+    take_fields(reader, head & kAllFields, seats[seat]);
   }
 }
 
@@ -162,13 +176,15 @@ void append_tick(const LogTick& tick, std::vector<SeatFrame>& seats, std::vector
   unsigned parts = 0;
   if (frame.seats.size() != seats.size()) parts |= kSeatCount;
   seats.resize(frame.seats.size());
-  if (seats != frame.seats) parts |= kSeats;
+  const std::uint32_t changed = count_changed(seats, frame.seats);
+  parts |= std::min(changed, kManySeats) << kSeatsShift;
   if (!frame.events.empty()) parts |= kEvents;
   if (!frame.changes.empty()) parts |= kChanges;
   if (parts == 0) return;
   append_little(static_cast<std::uint8_t>(parts), into);
   if ((parts & kSeatCount) != 0) append_varint(static_cast<std::uint32_t>(seats.size()), into);
-  if ((parts & kSeats) != 0) append_seats(seats, frame.seats, into);
+  if (changed >= kManySeats) append_varint(changed, into);
+  append_seats(seats, frame.seats, into);
   seats = frame.seats;
   if ((parts & kEvents) != 0) append_varint(static_cast<std::uint32_t>(frame.events.size()), into);
   for (const FrameEvent& event : frame.events) {
@@ -191,13 +207,16 @@ bool read_tick(std::span<const std::byte> payload, LogTick& tick) {
   tick.digest = reader.take<std::uint64_t>();
   if (reader.failed || reader.bytes.empty()) return !reader.failed;
   const unsigned parts = reader.take<std::uint8_t>();
-  if (parts == 0 || parts > kAllParts) return false;
+  if (parts == 0) return false;
   if ((parts & kSeatCount) != 0) {
     const std::uint32_t seats = take_varint(reader);
     if (reader.failed || seats > scenes::kSeatsMax || seats == frame.seats.size()) return false;
     frame.seats.resize(seats);
   }
-  if ((parts & kSeats) != 0) take_seats(reader, frame.seats);
+  std::uint32_t changed = parts >> kSeatsShift;
+  if (changed == kManySeats) changed = take_varint(reader);
+  if (parts >> kSeatsShift == kManySeats && changed < kManySeats) return false;
+  take_seats(reader, changed, frame.seats);
   if ((parts & kEvents) != 0) take_events(reader, frame);
   if ((parts & kChanges) != 0) take_changes(reader, frame);
   return !reader.failed && reader.bytes.empty();

@@ -18,8 +18,9 @@ inline constexpr std::uint32_t kLogFormat = 2;
 /// What the records hold. A change of any record changes this text with it, and so the number that
 /// each header carries.
 inline constexpr std::string_view kLogSchemaText =
-    "tick: digest u64, [parts u8: 1 count of seats, 2 seats, 4 events, 8 changes]; "
-    "count v; seats: n v, (skip v, fields u8, axes 4 x zigzag v, buttons xor v, origin u8); "
+    "tick: digest u64, [parts u8: bits 1 count of seats, 2 events, 4 changes, seats << 3]; "
+    "count v; [seats v]; seats x (fields u8: 4 axes, buttons, origin, skip << 6; [skip v], "
+    "axes zigzag v, buttons xor v, origin u8); "
     "events: n v, (kind u8, seat v); changes: n v, (kind u8, value v). "
     "keyframe: tick u64, digest u64, seats u16 x (origin u8, axes 4 x u16, buttons u16), state. "
     "footer: tick u64, digest u64, n u32 x (tick u64, at u64, before u32).";
