@@ -8,7 +8,7 @@
 #include "protocol/log_format.hpp"
 #include "scenes/scene.hpp"
 #include "server/desync/history.hpp"
-#include "server/room/seat.hpp"
+#include "server/room/seats.hpp"
 
 namespace cycloid::server {
 

@@ -9,11 +9,13 @@ void History::start(const scenes::Simulation& simulation) {
   ticks_.clear();
   states_.clear();
   bytes_ = 0;
+  last_tick_ = simulation.tick();
   keep(simulation, simulation.digest());
 }
 
 void History::add(const protocol::InputFrame& frame, std::uint64_t digest,
                   const scenes::Simulation& simulation) {
+  last_tick_ = frame.tick;
   ticks_.push_back({frame, digest});
   if (ticks_.size() > options_.ticks_max) ticks_.pop_front();
   // A state whose next frame is gone leads nowhere.

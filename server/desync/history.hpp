@@ -38,6 +38,7 @@ class History {
   void add(const protocol::InputFrame& frame, std::uint64_t digest,
            const scenes::Simulation& simulation);
 
+  std::uint64_t last_tick() const { return last_tick_; }
   std::optional<std::uint64_t> digest(std::uint64_t tick) const;
   /// The newest kept state of a tick before this one, from which it can be made again.
   std::optional<KeptState> before(std::uint64_t tick) const;
@@ -57,6 +58,7 @@ class History {
   std::deque<protocol::LogTick> ticks_;  ///< Ascending, without a gap.
   std::deque<KeptState> states_;         ///< Ascending.
   std::size_t bytes_ = 0;
+  std::uint64_t last_tick_ = 0;
 };
 
 }  // namespace cycloid::server

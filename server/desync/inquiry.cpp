@@ -22,6 +22,12 @@ void DesyncDesk::start(const scenes::Simulation& simulation) {
     if (inquiry.stage != Stage::kDone) give_up(inquiry, "the match was taken back meanwhile");
 }
 
+void DesyncDesk::on_tick(const protocol::InputFrame& frame, std::uint64_t digest,
+                         const scenes::Simulation& simulation) {
+  if (frame.tick != history_.last_tick() + 1) return start(simulation);
+  history_.add(frame, digest, simulation);
+}
+
 void DesyncDesk::on_digest(PeerId peer, std::uint64_t tick, std::uint64_t digest) {
   if (!history_.digest(tick)) return;
   auto& voters = votes_[tick];
@@ -88,7 +94,7 @@ void DesyncDesk::capture(std::uint64_t tick, Finding& finding) const {
   const std::uint64_t last = std::max(tick, finding.noticed_tick) + kTicksAround;
   const std::uint64_t first = tick > kTicksAround ? tick - kTicksAround : 1;
   finding.ticks =
-      history_.ticks(finding.start ? std::min(finding.start->tick + 1, first) : first, last);
+      history_.ticks(finding.start ? std::min(finding.start->tick, first) : first, last);
 }
 
 DesyncDesk::Inquiry* DesyncDesk::asked(PeerId peer, Stage stage) {

@@ -47,11 +47,9 @@ class DesyncDesk {
 
   /// The match begins, or goes on elsewhere: with this state.
   void start(const scenes::Simulation& simulation);
-  /// After every tick.
+  /// After every tick. One that does not follow the last one begins the match anew.
   void on_tick(const protocol::InputFrame& frame, std::uint64_t digest,
-               const scenes::Simulation& simulation) {
-    history_.add(frame, digest, simulation);
-  }
+               const scenes::Simulation& simulation);
 
   /// Every digest that a lockstep client answers with, equal or not: the vote of that replica.
   void on_digest(PeerId peer, std::uint64_t tick, std::uint64_t digest);

@@ -6,8 +6,6 @@
 #include <system_error>
 #include <utility>
 
-#include "scenes/catalogue.hpp"
-
 namespace cycloid::server {
 namespace {
 
@@ -114,32 +112,6 @@ ReportSink::Written ReportSink::publish(const Finding& finding, DesyncReport* re
   }
   if (report != nullptr) *report = std::move(found);
   return written;
-}
-
-protocol::Bytes cut_log(const Finding& finding, std::string& error) {
-  protocol::Bytes bytes;
-  if (!finding.start || finding.ticks.empty()) {
-    error = "the frames up to the tick are not kept any more";
-    return bytes;
-  }
-  if (finding.start->tick != 0) {
-    error = "it would begin at tick " + std::to_string(finding.start->tick);
-    return bytes;
-  }
-  protocol::LogHeader header;
-  header.scene_digest = finding.room->scene_digest;
-  header.salt = finding.server_digest;  // The same finding writes the same bytes.
-  header.scene_name = finding.room->scene->name;
-  header.scene = scenes::to_binary(*finding.room->scene);
-  protocol::LogEncoder encoder(header, bytes);
-  std::uint64_t next = 1;
-  for (const protocol::LogTick& tick : finding.ticks) {
-    if (tick.frame.tick != next) continue;
-    encoder.tick(tick, bytes);
-    ++next;
-  }
-  encoder.footer({next - 1, finding.ticks.back().digest}, bytes);
-  return bytes;
 }
 
 }  // namespace cycloid::server

@@ -21,6 +21,7 @@ struct Mismatch {
   std::uint64_t tick = 0;
   std::uint64_t theirs = 0;
   std::uint64_t ours = 0;
+  std::int32_t seat = protocol::kSpectator;
 };
 
 /// What a room still knows of the last ticks. Valid during the call that hands it over.

@@ -70,7 +70,7 @@ void Room::on_mismatch(PeerId id, Peer& peer, const protocol::Digest& digest, st
   }
   want_state(peer);
   if (hooks_.inquiry == nullptr) return;
-  const Mismatch mismatch{id, peer.name, peer.build, digest.tick, digest.digest, ours};
+  const Mismatch mismatch{id, peer.name, peer.build, digest.tick, digest.digest, ours, peer.seat};
   on_inquiry(id, peer, hooks_.inquiry->on_mismatch(mismatch, Evidence(*this)));
 }
 
