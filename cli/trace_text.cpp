@@ -6,13 +6,6 @@ namespace cycloid::cli {
 
 using solver::kNone;
 
-std::string point_text(const solver::TracePoint& at) {
-  std::string text = solver::phase_name(at.phase);
-  if (at.substep != kNone) text += ", substep " + std::to_string(at.substep);
-  if (at.sweep != kNone) text += ", sweep " + std::to_string(at.sweep);
-  return text;
-}
-
 std::optional<solver::Phase> phase_of(const std::string& name) {
   for (std::uint32_t i = 0; i < solver::kPhases; ++i)
     if (name == solver::phase_name(solver::Phase(i))) return solver::Phase(i);

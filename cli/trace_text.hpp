@@ -5,11 +5,9 @@
 
 #include "cli/match.hpp"
 #include "cli/output.hpp"
+#include "solver/tracing/writes.hpp"
 
 namespace cycloid::cli {
-
-/// "sweep, substep 0, sweep 1"
-std::string point_text(const solver::TracePoint& at);
 
 /// What `cycloid trace --tick --json` prints, and what `cycloid bisect` reads of another build.
 Json to_json(const TickTrace& trace);

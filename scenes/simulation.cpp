@@ -5,6 +5,7 @@
 #include "scenes/build.hpp"
 #include "scenes/characters.hpp"
 #include "scenes/controls.hpp"
+#include "solver/encoding.hpp"
 #include "solver/floating_point_mode.hpp"
 
 namespace cycloid::scenes {
@@ -20,6 +21,7 @@ struct Simulation::Running {
 };
 
 struct Simulation::Saved::State {
+  int dimension = 0;  ///< Which of the two was saved.
   solver::WorldState<2> planar;
   solver::WorldState<3> spatial;
 };
@@ -28,6 +30,18 @@ Simulation::Saved::Saved() : state_(std::make_unique<State>()) {}
 Simulation::Saved::~Saved() = default;
 Simulation::Saved::Saved(Saved&&) noexcept = default;
 Simulation::Saved& Simulation::Saved::operator=(Saved&&) noexcept = default;
+
+std::uint64_t Simulation::Saved::digest() const {
+  return state_->dimension == 2 ? solver::digest_state(state_->planar)
+                                : solver::digest_state(state_->spatial);
+}
+
+void Simulation::Saved::encode(std::vector<std::byte>& into) const {
+  if (state_->dimension == 2)
+    solver::encode_state(state_->planar, into);
+  else
+    solver::encode_state(state_->spatial, into);
+}
 
 Simulation::Simulation(std::unique_ptr<Running> running) : running_(std::move(running)) {}
 Simulation::Simulation(Simulation&&) noexcept = default;
@@ -110,6 +124,11 @@ std::optional<solver::Fault> Simulation::fault() const {
 
 void Simulation::encode(std::vector<std::byte>& into) const {
   running_->visit([&](const auto& built) { built.world.encode(into); });
+}
+
+std::size_t Simulation::encoded_bytes() const {
+  return running_->visit(
+      [](const auto& built) { return solver::encoded_bytes(built.world.state()); });
 }
 
 /// The registers hold places in rings and characters; a snapshot from outside may name a place that
@@ -217,6 +236,7 @@ static solver::WorldState<3>& part_of(solver::WorldState<2>&, solver::WorldState
 }
 
 void Simulation::save(Saved& into) const {
+  into.state_->dimension = dimension();
   running_->visit([&](const auto& built) {
     built.world.save(part_of(into.state_->planar, into.state_->spatial, built));
   });

@@ -73,6 +73,7 @@ class Simulation {
   std::uint64_t digest() const;
   std::optional<solver::Fault> fault() const;
   void encode(std::vector<std::byte>& into) const;
+  std::size_t encoded_bytes() const;  ///< How many that would be, without making them.
   solver::Error decode(std::span<const std::byte> bytes);
   solver::Statistics statistics() const;
   std::vector<Pose> poses() const;
@@ -92,6 +93,9 @@ class Simulation {
     ~Saved();
     Saved(Saved&&) noexcept;
     Saved& operator=(Saved&&) noexcept;
+    /// Of the simulation when it was saved. @pre something was.
+    std::uint64_t digest() const;
+    void encode(std::vector<std::byte>& into) const;
 
    private:
     friend class Simulation;

@@ -89,6 +89,7 @@ spdlog::level::level_enum level_of(Notice::Kind kind) {
     case Notice::Kind::kJoin:
     case Notice::Kind::kLeave:
     case Notice::Kind::kEnd:
+    case Notice::Kind::kAct:
       return spdlog::level::info;
     case Notice::Kind::kRefusal:
     case Notice::Kind::kDesync:

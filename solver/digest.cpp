@@ -1,3 +1,4 @@
+#include "solver/encoding.hpp"
 #include "solver/tracing/digest_writer.hpp"
 #include "solver/visit.hpp"
 #include "solver/world.hpp"
@@ -5,17 +6,37 @@
 namespace cycloid::solver {
 
 template <int D>
-std::uint64_t World<D>::digest() const {
+std::uint64_t digest_state(const WorldState<D>& state) {
   DigestWriter write;
   write(static_cast<std::uint32_t>(D));
-  visit_words(state_.header, write);
-  visit_arrays(state_, [&](const char*, const auto& array) {
+  visit_words(state.header, write);
+  visit_arrays(state, [&](const char*, const auto& array) {
     write(static_cast<std::uint32_t>(array.size()));
     for (const auto& element : array) visit_words(element, write);
   });
   return write.digest();
 }
 
+template <int D>
+static std::optional<std::uint64_t> digest_as(std::span<const std::byte> bytes) {
+  WorldState<D> state;
+  if (!read_state(bytes, state)) return std::nullopt;
+  return digest_state(state);
+}
+
+std::optional<std::uint64_t> digest_encoding(std::span<const std::byte> bytes) {
+  const int dimension = encoded_dimension(bytes);
+  if (dimension == 0) return std::nullopt;
+  return dimension == 2 ? digest_as<2>(bytes) : digest_as<3>(bytes);
+}
+
+template <int D>
+std::uint64_t World<D>::digest() const {
+  return digest_state(state_);
+}
+
+template std::uint64_t digest_state(const WorldState<2>&);
+template std::uint64_t digest_state(const WorldState<3>&);
 template std::uint64_t World<2>::digest() const;
 template std::uint64_t World<3>::digest() const;
 

@@ -1,4 +1,5 @@
 #include "solver/bytes.hpp"
+#include "solver/encoding.hpp"
 #include "solver/validate.hpp"
 #include "solver/visit.hpp"
 #include "solver/world.hpp"
@@ -10,7 +11,7 @@ namespace cycloid::solver {
 static constexpr std::uint32_t kMagic = 0x03575943u;
 
 template <int D>
-static std::size_t encoded_bytes(const WorldState<D>& state) {
+std::size_t encoded_bytes(const WorldState<D>& state) {
   std::size_t bytes = 2 * sizeof(std::uint32_t) + visited_bytes<WorldHeader<D>>();
   visit_arrays(state, [&](const char*, const auto& array) {
     using Element = std::remove_cvref_t<decltype(array[0])>;
@@ -20,8 +21,8 @@ static std::size_t encoded_bytes(const WorldState<D>& state) {
 }
 
 template <int D>
-void World<D>::encode(std::vector<std::byte>& into) const {
-  into.resize(encoded_bytes(state_));
+void encode_state(const WorldState<D>& state, std::vector<std::byte>& into) {
+  into.resize(encoded_bytes(state));
   std::byte* to = into.data();
   auto write = [&](const auto& value) {
     const auto bits = bits_of(value);
@@ -30,15 +31,26 @@ void World<D>::encode(std::vector<std::byte>& into) const {
   };
   write(kMagic);
   write(static_cast<std::uint32_t>(D));
-  visit_words(state_.header, write);
-  visit_arrays(state_, [&](const char*, const auto& array) {
+  visit_words(state.header, write);
+  visit_arrays(state, [&](const char*, const auto& array) {
     write(static_cast<std::uint32_t>(array.size()));
     for (const auto& element : array) visit_words(element, write);
   });
 }
 
+int encoded_dimension(std::span<const std::byte> bytes) {
+  ByteReader read{bytes};
+  std::uint32_t magic = 0;
+  std::uint32_t dimension = 0;
+  read(magic);
+  read(dimension);
+  const bool known = !read.failed && magic == kMagic && (dimension == 2 || dimension == 3);
+  return known ? static_cast<int>(dimension) : 0;
+}
+
 template <int D>
-static bool read_state(ByteReader& read, WorldState<D>& state) {
+bool read_state(std::span<const std::byte> bytes, WorldState<D>& state) {
+  ByteReader read{bytes};
   std::uint32_t magic = 0;
   std::uint32_t dimension = 0;
   read(magic);
@@ -59,15 +71,25 @@ static bool read_state(ByteReader& read, WorldState<D>& state) {
 }
 
 template <int D>
+void World<D>::encode(std::vector<std::byte>& into) const {
+  encode_state(state_, into);
+}
+
+template <int D>
 Error World<D>::decode(std::span<const std::byte> bytes) {
   WorldState<D> state;
-  ByteReader read{bytes};
-  if (!read_state(read, state)) return {Code::kCorrupt, "bytes"};
+  if (!read_state(bytes, state)) return {Code::kCorrupt, "bytes"};
   if (const Error error = validate(state); !error.ok()) return error;
   restore(state);
   return {};
 }
 
+template std::size_t encoded_bytes(const WorldState<2>&);
+template std::size_t encoded_bytes(const WorldState<3>&);
+template void encode_state(const WorldState<2>&, std::vector<std::byte>&);
+template void encode_state(const WorldState<3>&, std::vector<std::byte>&);
+template bool read_state(std::span<const std::byte>, WorldState<2>&);
+template bool read_state(std::span<const std::byte>, WorldState<3>&);
 template void World<2>::encode(std::vector<std::byte>&) const;
 template void World<3>::encode(std::vector<std::byte>&) const;
 template Error World<2>::decode(std::span<const std::byte>);

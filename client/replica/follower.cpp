@@ -21,7 +21,12 @@ Overloaded(Handlers...) -> Overloaded<Handlers...>;
 }  // namespace
 
 Follower::Follower(protocol::Mode mode, scenes::Simulation simulation, FollowerOptions options)
-    : simulation_(std::move(simulation)), mode_(mode), options_(std::move(options)) {}
+    : simulation_(std::move(simulation)),
+      mode_(mode),
+      options_(std::move(options)),
+      assembly_(std::min(options_.snapshot_bytes_max, protocol::kServerMessageBytesMax)) {
+  if (!options_.decoder) options_.decoder = std::make_shared<ExactDecoder>();
+}
 
 void Follower::greet(Outbox& out) {
   protocol::Hello hello;
@@ -29,36 +34,57 @@ void Follower::greet(Outbox& out) {
   hello.mode = mode_;
   hello.seat_wish = options_.seat_wish;
   hello.name = options_.name;
+  hello.room = options_.room;
+  hello.token = options_.token;
+  hello.resume = options_.resume;
+  hello.build = options_.build;
+  hello.profile = options_.profile;
   out.emplace_back(std::move(hello));
+}
+
+bool Follower::expect_state(const char* what) {
+  if (progress_.phase != Phase::kGreeting) return true;
+  fail(std::string(what) + " before the welcome");
+  return false;
 }
 
 void Follower::receive(const protocol::ServerMessage& message, Outbox& out) {
   if (progress_.over()) return;
   const auto handler = Overloaded{
       [&](const protocol::Welcome& welcome) { on_welcome(welcome); },
-      [&](const protocol::Refused& refused) {
-        progress_.refused = refused;
-        progress_.phase = Phase::kRefused;
-        progress_.reason = refused.reason;
-      },
+      [&](const protocol::Refused& refused) { on_refused(refused); },
       [&](const protocol::InputFrame& frame) {
-        if (progress_.phase != Phase::kRunning) return fail("a frame before the first snapshot");
-        on_frame(frame, out);
+        if (expect_state("a frame") && check_frame(frame)) on_frame(frame, out);
       },
       [&](const protocol::Snapshot& snapshot) {
-        if (progress_.phase == Phase::kGreeting) return fail("a snapshot before the welcome");
-        on_snapshot(snapshot, out);
+        if (!expect_state("a snapshot")) return;
+        assembly_.clear();
+        on_exact(snapshot, out);
+      },
+      [&](const protocol::SnapshotPart& part) {
+        if (expect_state("a part of a snapshot")) on_part(part, out);
+      },
+      [&](const protocol::StateDelta& delta) {
+        if (expect_state("a delta")) on_delta(delta, out);
       },
       [&](const protocol::Digest& digest) {
-        if (progress_.phase != Phase::kRunning) return fail("a digest before the first snapshot");
-        on_digest(digest, out);
+        if (expect_state("a digest")) on_digest(digest, out);
+      },
+      [&](const protocol::Margin& margin) {
+        if (expect_state("a margin")) on_margin(margin);
+      },
+      [&](const protocol::StateWanted& wanted) {
+        if (expect_state("a wish for the state") && options_.witness)
+          options_.witness->wanted(wanted, out);
+      },
+      [&](const protocol::RoomNotice& notice) {
+        if (expect_state("a notice")) on_notice(notice);
       },
       [&](const protocol::Pong& pong) { on_pong(pong); },
       [&](const protocol::Bye& bye) {
         progress_.phase = Phase::kEnded;
         progress_.reason = bye.reason;
       },
-      [](const auto&) {},
   };
   std::visit(handler, message);
 }
@@ -72,6 +98,12 @@ void Follower::ping(Outbox& out) {
 void Follower::fail(std::string reason) {
   progress_.phase = Phase::kFailed;
   progress_.reason = std::move(reason);
+}
+
+void Follower::on_refused(const protocol::Refused& refused) {
+  progress_.refused = refused;
+  progress_.phase = Phase::kRefused;
+  progress_.reason = refused.reason;
 }
 
 void Follower::on_welcome(const protocol::Welcome& welcome) {
@@ -90,47 +122,88 @@ void Follower::on_welcome(const protocol::Welcome& welcome) {
     return fail("an input delay of " + std::to_string(welcome.input_delay_ticks) + " ticks");
   }
   welcome_ = welcome;
+  base_tick_ = welcome.tick;
+  lead_.start(welcome.tick, welcome.input_delay_ticks);
+  progress_.lead_ticks = lead_.lead_ticks();
   progress_.seat = welcome.seat;
   progress_.phase = Phase::kLoading;
+  on_seated();
 }
 
 void Follower::on_pong(const protocol::Pong& pong) {
   if (pong.token == 0 || pong.token > pings_) fail("a pong that was not asked for");
 }
 
-bool Follower::load(const protocol::Snapshot& snapshot) {
-  const bool first = progress_.phase == Phase::kLoading;
-  const std::string name = "the snapshot of tick " + std::to_string(snapshot.tick);
-  if (first && snapshot.tick != welcome_.tick) {
-    fail(name + " is not the one that the welcome announced, of " + std::to_string(welcome_.tick));
+void Follower::on_part(const protocol::SnapshotPart& part, Outbox& out) {
+  if (const std::string wrong = assembly_.take(part); !wrong.empty()) {
+    return fail("a part of the snapshot of tick " + std::to_string(part.tick) + " " + wrong);
+  }
+  if (const auto whole = assembly_.finish()) on_exact(*whole, out);
+}
+
+void Follower::on_margin(const protocol::Margin& margin) {
+  progress_.early_ticks = margin.early_ticks;
+  if (!options_.steer || !seated()) return;
+  lead_.take(margin, sent_tick());
+  progress_.lead_ticks = lead_.lead_ticks();
+}
+
+void Follower::on_notice(const protocol::RoomNotice& notice) {
+  if (notice.kind == protocol::NoticeKind::kRewound) {
+    assembly_.clear();
+    base_tick_ = notice.value;
+    lead_.start(notice.value, welcome_.input_delay_ticks);
+    progress_.lead_ticks = lead_.lead_ticks();
+    progress_.last_tick = notice.value;
+    progress_.first_tick = std::min(progress_.first_tick, notice.value);
+    progress_.phase = Phase::kLoading;
+    ++progress_.rewinds;
+    first_input_tick_ = next_input_tick_ = 0;
+    on_rewound(notice.value);
+  }
+  if (options_.on_notice) options_.on_notice(notice);
+}
+
+std::optional<std::uint64_t> Follower::assembling_tick() const {
+  if (!assembly_.under_way()) return std::nullopt;
+  return assembly_.tick();
+}
+
+bool Follower::load(const protocol::Snapshot& state) {
+  const std::string name = "the snapshot of tick " + std::to_string(state.tick);
+  if (loading() && state.tick < base_tick_) {
+    fail(name + " is older than the one that was announced, of " + std::to_string(base_tick_));
     return false;
   }
-  if (!first && snapshot.tick < simulation_.tick()) {
-    fail(name + " is older than the state, of tick " + std::to_string(simulation_.tick()));
-    return false;
-  }
-  if (const solver::Error error = simulation_.decode(snapshot.state); !error.ok()) {
+  if (const solver::Error error = simulation_.decode(state.state); !error.ok()) {
     fail(name + " is corrupt: " + error.field);
     return false;
   }
-  if (simulation_.tick() != snapshot.tick || simulation_.digest() != snapshot.digest) {
+  if (simulation_.tick() != state.tick || simulation_.digest() != state.digest) {
     fail(name + " is not of the tick or the digest that it says");
     return false;
   }
-  if (first) progress_.first_tick = snapshot.tick;
-  progress_.last_tick = snapshot.tick;
-  progress_.phase = Phase::kRunning;
-  ++progress_.snapshots;
+  loaded(state.tick);
   return true;
 }
 
-void Follower::send_inputs(std::uint64_t last, Outbox& out) {
+void Follower::loaded(std::uint64_t tick) {
+  if (progress_.snapshots == 0) progress_.first_tick = tick;
+  progress_.last_tick = tick;
+  progress_.phase = Phase::kRunning;
+  ++progress_.snapshots;
+}
+
+void Follower::send_inputs(std::uint64_t last, std::uint64_t burst, Outbox& out) {
   if (!seated() || !options_.input) return;
-  next_input_tick_ = std::max(next_input_tick_, simulation_.tick() + input_delay());
+  if (first_input_tick_ == 0) next_input_tick_ = progress_.last_tick + lead();
+  // After a leap of the lead the ticks before are past saving.
+  if (last >= burst) next_input_tick_ = std::max(next_input_tick_, last - burst + 1);
   for (; next_input_tick_ <= last; ++next_input_tick_) {
     if (first_input_tick_ == 0) first_input_tick_ = next_input_tick_;
     const scenes::SeatInput input = options_.input(progress_.seat, next_input_tick_);
     out.emplace_back(protocol::Input{next_input_tick_, input});
+    on_said(next_input_tick_, input);
     ++progress_.inputs_sent;
   }
 }
@@ -148,11 +221,22 @@ bool Follower::check_frame(const protocol::InputFrame& frame) {
     fail(name + " has an event of seat " + std::to_string(event.seat));
     return false;
   }
+  for (const protocol::FrameChange& change : frame.changes) {
+    if (change.value != 0 && change.value <= kInputDelayTicksMax) continue;
+    fail(name + " changes the input delay to " + std::to_string(change.value) + " ticks");
+    return false;
+  }
   return true;
 }
 
-void Follower::count_frame(const protocol::InputFrame& frame) {
+void Follower::take_frame(const protocol::InputFrame& frame) {
   ++progress_.frames;
+  for (const protocol::FrameChange& change : frame.changes) {
+    welcome_.input_delay_ticks = change.value;
+    lead_.change_delay(change.value, sent_tick());
+    progress_.lead_ticks = lead_.lead_ticks();
+  }
+  if (options_.on_frame) options_.on_frame(frame);
   if (!seated() || first_input_tick_ == 0 || frame.tick < first_input_tick_) return;
   const auto seat = static_cast<std::size_t>(progress_.seat);
   if (frame.seats[seat].origin != protocol::Origin::kGiven) ++progress_.inputs_replaced;

@@ -1,56 +1,17 @@
 #pragma once
 
 #include <cstdint>
-#include <functional>
 #include <optional>
 #include <string>
 #include <vector>
 
+#include "client/replica/assembly.hpp"
+#include "client/replica/lead.hpp"
+#include "client/replica/progress.hpp"
 #include "protocol/messages.hpp"
 #include "scenes/simulation.hpp"
 
 namespace cycloid::client {
-
-/// What a seat says for a tick.
-using InputSource = std::function<scenes::SeatInput(int seat, std::uint64_t tick)>;
-
-/// Messages to send, in order. Whoever owns the connection empties it.
-using Outbox = std::vector<protocol::ClientMessage>;
-
-enum class Phase : std::uint8_t {
-  kGreeting,  ///< The hello is out, no welcome yet.
-  kLoading,   ///< Welcome; its snapshot has not come yet.
-  kRunning,
-  kEnded,    ///< The server said goodbye.
-  kRefused,  ///< The server sent us away.
-  kFailed,   ///< The server broke the rules, or the world cannot step.
-};
-
-/// How far a follower has come. Counts since the hello.
-struct Progress {
-  Phase phase = Phase::kGreeting;
-  std::string reason;  ///< Why it is over; "" while it is not.
-  std::optional<protocol::Refused> refused;
-  std::int32_t seat = protocol::kSpectator;
-  std::uint64_t first_tick = 0;  ///< Of the first snapshot.
-  std::uint64_t last_tick = 0;   ///< Of the state that is held now.
-  std::uint64_t frames = 0;
-  std::uint64_t snapshots = 0;
-  std::uint64_t digests_compared = 0;
-  std::uint64_t mismatches = 0;  ///< Digests that were compared and differed.
-  std::uint64_t resyncs = 0;     ///< Snapshots that ended a mismatch.
-  std::uint64_t inputs_sent = 0;
-  std::uint64_t inputs_replaced = 0;  ///< Frames in which my input was not the one I gave.
-
-  bool over() const { return phase >= Phase::kEnded; }
-};
-
-struct FollowerOptions {
-  std::uint64_t scene_digest = 0;
-  std::int32_t seat_wish = protocol::kAnySeat;
-  std::string name;
-  InputSource input;  ///< Asked once for every tick, in order, when the client has a seat.
-};
 
 /// The client's side of the protocol without I/O or clock: messages in, messages out. What the two
 /// modes have in common; they differ in how they come to the next state.
@@ -69,43 +30,80 @@ class Follower {
   void receive(const protocol::ServerMessage& message, Outbox& out);
   /// Asks for a pong, which shows both sides that the other lives.
   void ping(Outbox& out);
+  /// All messages at hand were taken in: brings predictions up to them. Before the state is read.
+  virtual void settle() {}
+  /// A tick has passed on the host's clock without a frame: says and predicts one tick more. False
+  /// where nothing is predicted, or the window is full.
+  virtual bool advance(Outbox&) { return false; }
 
   const Progress& progress() const { return progress_; }
   std::uint32_t tick_rate_millihertz() const { return welcome_.tick_rate_millihertz; }
+  const protocol::Welcome& welcome() const { return welcome_; }
+  /// The state to show: the predicted one where there are predictions. Of a snapshot client with
+  /// the quantised profile it is the last exact one; see `poses`.
   const scenes::Simulation& simulation() const { return simulation_; }
   /// For a host that disturbs its own world, such as a test of recovery.
   scenes::Simulation& simulation() { return simulation_; }
+  virtual std::vector<scenes::Pose> poses() const { return simulation_.poses(); }
+  /// Of the confirmed state, at progress().last_tick.
+  virtual std::uint64_t digest() const { return simulation_.digest(); }
 
  protected:
   Follower(protocol::Mode mode, scenes::Simulation simulation, FollowerOptions options);
 
-  virtual void on_snapshot(const protocol::Snapshot& snapshot, Outbox& out) = 0;
+  virtual void on_exact(const protocol::Snapshot& state, Outbox& out) = 0;
   virtual void on_frame(const protocol::InputFrame& frame, Outbox& out) = 0;
   virtual void on_digest(const protocol::Digest& digest, Outbox& out) = 0;
+  virtual void on_delta(const protocol::StateDelta& delta, Outbox& out) = 0;
+  /// Exact state of `tick` and frames from there on will come: what is later is void.
+  virtual void on_rewound(std::uint64_t tick) = 0;
+  virtual void on_seated() {}
 
   void fail(std::string reason);
-  /// Puts the snapshot in place of the state; false, and the session has failed, if it is not one.
-  bool load(const protocol::Snapshot& snapshot);
-  /// Sends my inputs for the ticks up to `last` that were not sent yet. Starts at the tick that
-  /// `input_delay_ticks` after the state can still reach.
-  void send_inputs(std::uint64_t last, Outbox& out);
+  /// Puts the exact state in place of the world; false, and the session has failed, if it is none.
+  bool load(const protocol::Snapshot& state);
+  /// Counts a state of `tick` that was taken in, and is running from now on.
+  void loaded(std::uint64_t tick);
+  /// Sends my inputs for the ticks up to `last` that were not sent yet, at most `burst` of them.
+  /// Starts at the lead's first tick.
+  void send_inputs(std::uint64_t last, std::uint64_t burst, Outbox& out);
   /// False, and the session has failed, where the frame does not fit the scene.
   bool check_frame(const protocol::InputFrame& frame);
-  void count_frame(const protocol::InputFrame& frame);
+  /// Counts a frame of which the tick is made, and takes its changes over.
+  void take_frame(const protocol::InputFrame& frame);
 
-  std::uint64_t input_delay() const { return welcome_.input_delay_ticks; }
+  bool seated() const { return progress_.seat >= 0; }
+  std::uint64_t lead() const { return lead_.lead_ticks(); }
+  std::uint64_t next_input_tick() const { return next_input_tick_; }
+  /// Exact state to begin with: of the welcome, or of the last rewind.
+  std::uint64_t base_tick() const { return base_tick_; }
+  bool loading() const { return progress_.phase == Phase::kLoading; }
+  /// Of the exact state whose parts are coming in, if one is.
+  std::optional<std::uint64_t> assembling_tick() const;
+  /// My input for a tick that is being sent; for a prediction.
+  virtual void on_said(std::uint64_t, const scenes::SeatInput&) {}
+
+  const FollowerOptions& options() const { return options_; }
   Progress progress_;
   scenes::Simulation simulation_;
 
  private:
   void on_welcome(const protocol::Welcome& welcome);
   void on_pong(const protocol::Pong& pong);
-  bool seated() const { return progress_.seat >= 0; }
+  void on_part(const protocol::SnapshotPart& part, Outbox& out);
+  void on_margin(const protocol::Margin& margin);
+  void on_notice(const protocol::RoomNotice& notice);
+  void on_refused(const protocol::Refused& refused);
+  bool expect_state(const char* what);
+  std::uint64_t sent_tick() const { return first_input_tick_ == 0 ? 0 : next_input_tick_ - 1; }
 
   protocol::Mode mode_;
   FollowerOptions options_;
   protocol::Welcome welcome_;
+  SnapshotAssembly assembly_;
+  LeadController lead_;
   std::uint64_t pings_ = 0;
+  std::uint64_t base_tick_ = 0;
   std::uint64_t first_input_tick_ = 0;  ///< 0 until an input was sent.
   std::uint64_t next_input_tick_ = 0;
 };

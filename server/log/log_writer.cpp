@@ -1,52 +1,53 @@
 #include "server/log/log_writer.hpp"
 
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <cerrno>
-#include <filesystem>
-#include <system_error>
+#include <algorithm>
+#include <random>
 #include <utility>
 
 namespace cycloid::server {
 namespace {
 
-using Clock = std::chrono::steady_clock;
+template <class Clock>
+std::int64_t clock_ns() {
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
+      .count();
+}
 
-/// A new name is on the disk when its folder is.
-void sync_folder_of(const std::string& path) {
-  const std::filesystem::path folder = std::filesystem::absolute(path).parent_path();
-  const int file = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
-  if (file < 0) return;  // A folder that may be written but not read; the data is synced anyway.
-  (void)::fsync(file);
-  (void)::close(file);
+std::uint64_t system_random() {
+  std::random_device random;
+  return std::uint64_t{random()} << 32 | random();
+}
+
+/// A name beside the log's that no other process takes.
+std::string temporary_name(const std::string& path, std::uint64_t number) {
+  return path + "." + std::to_string(number) + ".tmp";
 }
 
 }  // namespace
 
-LogCalls system_log_calls() {
-  return {::write, ::fdatasync};
-}
-
-LogWriter::LogWriter(LogWriterOptions options, const protocol::LogHeader& header)
-    : options_(std::move(options)) {
-  protocol::Bytes bytes;
-  encoder_.emplace(header, bytes);
-  file_ = ::open(options_.path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (file_ < 0) throw std::system_error(errno, std::generic_category(), options_.path);
-  if (!write_all(bytes) || !sync()) {
-    const int why = errno;
-    (void)::close(file_);
-    (void)::unlink(options_.path.c_str());
-    throw std::system_error(why, std::generic_category(), options_.path);
-  }
-  sync_folder_of(options_.path);
-  thread_ = std::thread([this] { run(); });
+LogWriter::LogWriter(LogWriterOptions options, const protocol::LogHeader& header,
+                     const protocol::LogKeyframe* first)
+    : options_(std::move(options)), header_(header) {
+  if (!options_.now_ns) options_.now_ns = clock_ns<std::chrono::steady_clock>;
+  if (!options_.unix_now_ns) options_.unix_now_ns = clock_ns<std::chrono::system_clock>;
+  if (!options_.random) options_.random = system_random;
+  encoder_.emplace(header_, record_);
+  if (first != nullptr) encoder_->first_keyframe(*first, record_);
+  file_ = new_file(options_.path);
+  if (!file_->create() || !file_->append(record_) || !file_->publish())
+    throw std::system_error(file_->code(), std::generic_category(), options_.path);
+  metrics_.bytes = record_.size();
+  next_keyframe_ = header_.branch_tick + options_.keyframes.ticks_min;
+  next_sync_ns_ = options_.now_ns() + std::chrono::nanoseconds(options_.interval).count();
+  if (options_.threaded) thread_ = std::thread([this] { run(); });
 }
 
 LogWriter::~LogWriter() {
   stop();
-  (void)::close(file_);
+}
+
+std::unique_ptr<LogFile> LogWriter::new_file(const std::string& path) const {
+  return std::make_unique<LogFile>(options_.disk, path, temporary_name(path, options_.random()));
 }
 
 void LogWriter::tick(const protocol::LogTick& tick) {
@@ -55,11 +56,72 @@ void LogWriter::tick(const protocol::LogTick& tick) {
   hand_over(options_.sync == LogSync::kEveryTick);
 }
 
+bool LogWriter::wants_keyframe(std::uint64_t tick) const {
+  if (failed_) return false;
+  return rotating_ != nullptr || (options_.keyframes.bytes_per_tick != 0 && tick >= next_keyframe_);
+}
+
+void LogWriter::keyframe(std::uint64_t tick, std::uint64_t digest,
+                         std::span<const std::byte> state) {
+  if (failed_) return;
+  const KeyframePolicy& policy = options_.keyframes;
+  if (policy.bytes_per_tick != 0)
+    next_keyframe_ = tick + std::max(policy.ticks_min, state.size() / policy.bytes_per_tick);
+  {
+    const std::scoped_lock lock(mutex_);
+    ++metrics_.keyframes;
+    metrics_.keyframe_bytes += state.size();
+  }
+  if (rotating_) return turn_over(tick, digest, state);
+  record_.clear();
+  encoder_->keyframe(digest, state, record_);
+  hand_over(false);
+}
+
+std::error_code LogWriter::rotate(const std::string& path) {
+  const auto why = [](std::errc code) { return std::make_error_code(code); };
+  if (failed_) return why(std::errc::io_error);
+  {
+    const std::scoped_lock lock(mutex_);
+    if (rotating_ || next_) return why(std::errc::device_or_resource_busy);
+  }
+  std::unique_ptr<LogFile> file = new_file(path);
+  if (!file->create()) return {file->code(), std::generic_category()};
+  rotating_ = std::move(file);
+  return {};
+}
+
+/// The footer of the old file and the header and keyframe of the new one, in one go.
+void LogWriter::turn_over(std::uint64_t tick, std::uint64_t digest,
+                          std::span<const std::byte> state) {
+  record_.clear();
+  encoder_->footer({tick, digest, {}}, record_);
+  hand_over(false);
+
+  header_.parent_log_id = std::exchange(header_.log_id, options_.random());
+  header_.branch_tick = tick;
+  header_.salt = options_.random();
+  header_.start_unix_ns = options_.unix_now_ns();
+  const protocol::LogKeyframe first{tick, digest, encoder_->seats(), {state.begin(), state.end()}};
+  record_.clear();
+  encoder_.emplace(header_, record_);
+  encoder_->first_keyframe(first, record_);
+  {
+    const std::scoped_lock lock(mutex_);
+    next_.emplace();
+    options_.path = rotating_->path();
+    next_->file = std::move(rotating_);
+    ++metrics_.rotations;
+  }
+  hand_over(false);
+}
+
 void LogWriter::close(const protocol::LogFooter& footer) {
   record_.clear();
   encoder_->footer(footer, record_);
   hand_over(true);
   stop();
+  rotating_.reset();
 }
 
 std::string LogWriter::error() const {
@@ -67,86 +129,103 @@ std::string LogWriter::error() const {
   return error_;
 }
 
+LogMetrics LogWriter::metrics() const {
+  const std::scoped_lock lock(mutex_);
+  return metrics_;
+}
+
 void LogWriter::hand_over(bool wait) {
   std::unique_lock lock(mutex_);
   if (failed_ || stop_) return;
-  if (queue_.size() + record_.size() > options_.queue_bytes_max) {
-    return fail(lock, "the disk does not keep up: more than " +
+  if (metrics_.queue_bytes + record_.size() > options_.queue_bytes_max) {
+    return fail(lock, options_.path + ": the disk does not keep up: more than " +
                           std::to_string(options_.queue_bytes_max) + " bytes wait");
   }
-  queue_.insert(queue_.end(), record_.begin(), record_.end());
+  protocol::Bytes& queue = next_ ? next_->queue : queue_;
+  queue.insert(queue.end(), record_.begin(), record_.end());
+  metrics_.queue_bytes += record_.size();
+  metrics_.queue_bytes_most = std::max(metrics_.queue_bytes_most, metrics_.queue_bytes);
   const std::uint64_t mine = ++handed_over_;
   if (wait) wanted_ = mine;
+  if (!options_.threaded) return work(lock);
   work_.notify_one();
   if (wait) written_.wait(lock, [&] { return synced_ >= mine || failed_; });
 }
 
 void LogWriter::stop() {
   {
-    const std::scoped_lock lock(mutex_);
-    stop_ = true;
+    std::unique_lock lock(mutex_);
+    const bool first = !std::exchange(stop_, true);
+    if (first && !options_.threaded && !failed_) work(lock);
   }
   work_.notify_one();
   if (thread_.joinable()) thread_.join();
 }
 
 void LogWriter::run() {
-  protocol::Bytes batch;
-  Clock::time_point next_sync = Clock::now() + options_.interval;
   std::unique_lock lock(mutex_);
-  std::uint64_t written = 0;
-  while (!failed_) {
-    const auto due = [&] { return !queue_.empty() || stop_ || wanted_ > synced_; };
-    if (written == synced_) {
+  const auto due = [&] {
+    return !queue_.empty() || next_ || stop_ || wanted_ > synced_ || failed_;
+  };
+  while (!failed_ && !stopped_) {
+    if (in_kernel_ == synced_ || options_.sync == LogSync::kNone) {
       work_.wait(lock, due);
     } else {
-      (void)work_.wait_until(lock, next_sync, due);
+      const std::chrono::nanoseconds left(next_sync_ns_ - options_.now_ns());
+      (void)work_.wait_for(lock, left, due);
     }
-    batch.clear();
-    batch.swap(queue_);
-    const std::uint64_t taken = handed_over_;
-    const bool last = stop_;
-    const bool sync_now = last || wanted_ > synced_ || Clock::now() >= next_sync;
-
-    lock.unlock();
-    std::string failure;
-    if (!write_all(batch)) failure = "write";
-    if (failure.empty() && sync_now && !sync()) failure = "sync";
-    const int why = errno;
-    if (sync_now) next_sync = Clock::now() + options_.interval;
-    lock.lock();
-
-    written = taken;
-    if (!failure.empty()) return fail(lock, failure + ": " + std::generic_category().message(why));
-    if (sync_now) synced_ = taken;
-    written_.notify_all();
-    if (last) return;
+    if (!failed_) work(lock);
   }
 }
 
-bool LogWriter::write_all(const protocol::Bytes& bytes) {
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = options_.calls.write(file_, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count == 0) errno = EIO;  // Such a file takes nothing, and says no error either.
-    if (count <= 0) return false;
-    done += static_cast<std::size_t>(count);
+/// Brings what waits to the disk, in the order in which it came. Unlocked while the disk works.
+void LogWriter::work(std::unique_lock<std::mutex>& lock) {
+  const protocol::Bytes batch = std::exchange(queue_, {});
+  std::optional<Next> next = std::exchange(next_, {});
+  const std::uint64_t taken = handed_over_;
+  const bool last = stop_;
+  const bool is_due = options_.sync == LogSync::kInterval && options_.now_ns() >= next_sync_ns_;
+  const bool sync_now = taken > synced_ && (last || wanted_ > synced_ || is_due);
+
+  lock.unlock();
+  bool good = write_out(batch, sync_now || next);
+  std::uint64_t bytes = batch.size();
+  if (good && next) {
+    file_ = std::move(next->file);
+    good = file_->append(next->queue) && file_->publish();
+    bytes += next->queue.size();
   }
-  return true;
+  lock.lock();
+
+  if (!good) return fail(lock, file_->error());
+  metrics_.bytes += bytes;
+  metrics_.queue_bytes -= bytes;
+  in_kernel_ = taken;
+  if (sync_now || next) synced_ = taken;
+  stopped_ = last;
+  written_.notify_all();
 }
 
-bool LogWriter::sync() {
-  int result = 0;
-  do {
-    result = options_.calls.sync(file_);
-  } while (result != 0 && errno == EINTR);
-  return result == 0;
+bool LogWriter::write_out(const protocol::Bytes& batch, bool sync_now) {
+  if (!file_->append(batch)) return false;
+  if (!sync_now) return true;
+  next_sync_ns_ = options_.now_ns() + std::chrono::nanoseconds(options_.interval).count();
+  return timed_sync();
+}
+
+bool LogWriter::timed_sync() {
+  const std::int64_t begin = options_.now_ns();
+  const bool good = file_->sync();
+  const auto took = static_cast<std::uint64_t>(options_.now_ns() - begin);
+  const std::scoped_lock lock(mutex_);
+  ++metrics_.syncs;
+  metrics_.sync_ns.add(took);
+  return good;
 }
 
 void LogWriter::fail(const std::unique_lock<std::mutex>&, const std::string& what) {
   if (failed_.exchange(true)) return;
-  error_ = options_.path + ": " + what;
+  error_ = what;
   written_.notify_all();
   work_.notify_one();
 }

@@ -1,19 +1,22 @@
 #pragma once
 
-#include <sys/types.h>
-
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <thread>
 
-#include "protocol/log_format.hpp"
+#include "protocol/log/encoder.hpp"
+#include "server/log/disk.hpp"
+#include "server/log/log_file.hpp"
+#include "server/room/histogram.hpp"
 #include "server/room/log_sink.hpp"
 
 namespace cycloid::server {
@@ -22,22 +25,41 @@ namespace cycloid::server {
 enum class LogSync : std::uint8_t {
   kInterval,   ///< Synced every 100 ms: a power cut loses at most that; a killed process, less.
   kEveryTick,  ///< Synced before its frame leaves; the tick waits for the disk.
+  kNone,       ///< Left to the system, and synced at the end: a power cut loses what it may.
 };
 
-/// The system calls of the writer, so that a test can make them fail. Must be callable from its
-/// thread.
-struct LogCalls {
-  std::function<ssize_t(int, const void*, std::size_t)> write;
-  std::function<int(int)> sync;
+/// How often the exact state goes into the log.
+struct KeyframePolicy {
+  std::uint64_t ticks_min = 600;  ///< Between two.
+  /// What keyframes may take in the long run: a large state comes as rarely as its size demands.
+  /// 0: none at all.
+  std::uint64_t bytes_per_tick = 16;
 };
-LogCalls system_log_calls();
 
 struct LogWriterOptions {
   std::string path;
   LogSync sync = LogSync::kInterval;
   std::chrono::milliseconds interval{100};
   std::size_t queue_bytes_max = std::size_t{16} << 20;
-  LogCalls calls = system_log_calls();
+  KeyframePolicy keyframes;
+  std::shared_ptr<Disk> disk = system_disk();
+  /// False: the disk is used within the calls of the room, for a simulation in one thread.
+  bool threaded = true;
+  std::function<std::int64_t()> now_ns;       ///< Steady; empty: the system's.
+  std::function<std::int64_t()> unix_now_ns;  ///< For the header of a rotated log; empty: system.
+  std::function<std::uint64_t()> random;      ///< For salts and ids; empty: the system's.
+};
+
+/// What a host may want to show. All since the writer was made.
+struct LogMetrics {
+  std::uint64_t bytes = 0;  ///< Written, of all files.
+  std::uint64_t syncs = 0;
+  Histogram sync_ns;
+  std::uint64_t queue_bytes = 0;       ///< Handed over and not yet written, now.
+  std::uint64_t queue_bytes_most = 0;  ///< At any time.
+  std::uint64_t keyframes = 0;
+  std::uint64_t keyframe_bytes = 0;
+  std::uint64_t rotations = 0;
 };
 
 /// Appends a match to a file, in order, from its own thread.
@@ -49,42 +71,76 @@ struct LogWriterOptions {
 class LogWriter final : public LogSink {
  public:
   /// Creates the file, which must not exist, and has its header on the disk on return.
+  /// @param first  The state that a log with a branch_tick goes on from, else null.
   /// @throws std::system_error
-  LogWriter(LogWriterOptions options, const protocol::LogHeader& header);
+  LogWriter(LogWriterOptions options, const protocol::LogHeader& header,
+            const protocol::LogKeyframe* first = nullptr);
   LogWriter(const LogWriter&) = delete;
   LogWriter& operator=(const LogWriter&) = delete;
   /// Without `close` the file ends without a footer: it says itself that it is not complete.
   ~LogWriter() override;
 
   void tick(const protocol::LogTick& tick) override;
+  bool wants_keyframe(std::uint64_t tick) const override;
+  void keyframe(std::uint64_t tick, std::uint64_t digest,
+                std::span<const std::byte> state) override;
   /// Writes the footer, syncs, and waits for both.
   void close(const protocol::LogFooter& footer) override;
   bool durable() const override { return !failed_; }
   std::string error() const override;
 
+  /// Closes the log with a footer and goes on in a new file, which names this one as its parent and
+  /// begins with the state of the next keyframe: that is wanted at once. From the room's thread.
+  /// @returns why not, and nothing has changed: `path` cannot be made, a rotation is under way
+  /// (device_or_resource_busy), or the log has ended (io_error).
+  [[nodiscard]] std::error_code rotate(const std::string& path);
+
+  /// From any thread; never waits for the disk.
+  LogMetrics metrics() const;
+
  private:
+  /// What comes after the current file.
+  struct Next {
+    std::unique_ptr<LogFile> file;
+    protocol::Bytes queue;
+  };
+
+  std::unique_ptr<LogFile> new_file(const std::string& path) const;
+  void turn_over(std::uint64_t tick, std::uint64_t digest, std::span<const std::byte> state);
   void hand_over(bool wait);  ///< `record_`; waits until it is on the disk.
   void run();
   void stop();
-  bool write_all(const protocol::Bytes& bytes);
-  bool sync();
+  void work(std::unique_lock<std::mutex>& lock);
+  bool write_out(const protocol::Bytes& batch, bool sync_now);
+  bool timed_sync();
   /// The lock shows that the caller holds `mutex_`.
   void fail(const std::unique_lock<std::mutex>& lock, const std::string& what);
 
+  // Of the room's thread.
   LogWriterOptions options_;
-  int file_ = -1;
+  protocol::LogHeader header_;  ///< Of the current file.
   std::optional<protocol::LogEncoder> encoder_;
-  protocol::Bytes record_;  ///< Of the calling thread.
+  protocol::Bytes record_;
+  std::uint64_t next_keyframe_ = 0;
+  std::unique_ptr<LogFile> rotating_;  ///< Waits for its first keyframe.
+
+  // Of the writer's thread, or of the room's where there is none.
+  std::unique_ptr<LogFile> file_;
+  std::int64_t next_sync_ns_ = 0;
 
   mutable std::mutex mutex_;
   std::condition_variable work_;
   std::condition_variable written_;
   protocol::Bytes queue_;
+  std::optional<Next> next_;
   std::string error_;
+  LogMetrics metrics_;
   std::uint64_t handed_over_ = 0;  ///< Calls of `hand_over`.
+  std::uint64_t in_kernel_ = 0;    ///< How many of them are written.
   std::uint64_t synced_ = 0;       ///< How many of them are on the disk.
   std::uint64_t wanted_ = 0;       ///< How many of them somebody waits for.
   bool stop_ = false;
+  bool stopped_ = false;
   std::atomic<bool> failed_{false};
   std::thread thread_;
 };

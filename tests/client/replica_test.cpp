@@ -2,56 +2,11 @@
 
 #include <gtest/gtest.h>
 
-#include <variant>
-
 #include "client/replica/thin.hpp"
-#include "tests/client/authority.hpp"
+#include "tests/client/fed.hpp"
 
 namespace cycloid::client {
 namespace {
-
-template <class Message>
-std::vector<Message> all_of(const Outbox& outbox) {
-  std::vector<Message> found;
-  for (const protocol::ClientMessage& message : outbox) {
-    if (const auto* wanted = std::get_if<Message>(&message)) found.push_back(*wanted);
-  }
-  return found;
-}
-
-/// A follower of either mode beside the authority that feeds it.
-template <class Kind>
-class Fed : public testing::Test {
- protected:
-  Fed() : scene_(Authority::scene()), authority_(scene_), follower_(make(), options()) {}
-
-  scenes::Simulation make() { return std::move(scenes::Simulation::create(scene_).value()); }
-  FollowerOptions options() {
-    FollowerOptions options;
-    options.scene_digest = scenes::scene_digest(scene_);
-    options.name = "test";
-    options.input = [this](int seat, std::uint64_t tick) {
-      return scenes::scripted_input(scene_, seat, tick);
-    };
-    return options;
-  }
-  void feed(const protocol::ServerMessage& message) { follower_.receive(message, outbox_); }
-  void start(std::int32_t seat = 0) {
-    feed(authority_.welcome(seat));
-    feed(authority_.snapshot());
-    ASSERT_EQ(follower_.progress().phase, Phase::kRunning) << follower_.progress().reason;
-  }
-  void expect_failed(const std::string& words) {
-    EXPECT_EQ(follower_.progress().phase, Phase::kFailed);
-    EXPECT_NE(follower_.progress().reason.find(words), std::string::npos)
-        << follower_.progress().reason;
-  }
-
-  scenes::Scene scene_;
-  Authority authority_;
-  Kind follower_;
-  Outbox outbox_;
-};
 
 using ReplicaTest = Fed<Replica>;
 using ThinTest = Fed<Thin>;
@@ -194,10 +149,13 @@ TEST_F(ReplicaTest, HostileMessagesEndTheSessionWithAReason) {
   protocol::Snapshot lying = authority_.snapshot();
   lying.digest ^= 1;
   protocol::Snapshot empty;
+  protocol::InputFrame far;
+  far.tick = std::uint64_t(-1);
+  far.seats.resize(other_seats.seats - 1);
   const Case cases[] = {
-      {"before the first snapshot", protocol::InputFrame{}, false},
+      {"before the welcome", protocol::InputFrame{}, false},
       {"before the welcome", authority_.snapshot(), false},
-      {"before the first snapshot", protocol::Digest{}, false},
+      {"before the welcome", protocol::Digest{}, false},
       {"gave out seat", no_such_seat, false},
       {"seats, the scene here", other_seats, false},
       {"an input delay", long_delay, false},
@@ -206,8 +164,8 @@ TEST_F(ReplicaTest, HostileMessagesEndTheSessionWithAReason) {
       {"is corrupt", torn, true},
       {"is corrupt", empty, true},
       {"the digest that it says", lying, true},
-      {"instead of", protocol::InputFrame{1, {}, {}}, true},
-      {"a gap", protocol::InputFrame{std::uint64_t(-1), {}, {}}, true},
+      {"instead of", protocol::InputFrame{1, {}, {}, {}}, true},
+      {"a gap", far, true},
   };
   for (const Case& wrong : cases) {
     Replica follower(make(), options());
@@ -241,12 +199,17 @@ TEST_F(ReplicaTest, DigestsOfTicksToComeAreBounded) {
   expect_failed("too many digests");
 }
 
-TEST_F(ReplicaTest, SnapshotOfAnOlderTickEndsTheSession) {
-  start();
+TEST_F(ReplicaTest, SnapshotFromBeforeTheFramesThatAreKeptEndsTheSession) {
   const protocol::Snapshot old = authority_.snapshot();
-  feed(authority_.frame());
-  feed(old);
-  expect_failed("older than the state");
+  feed(authority_.welcome(0));
+  for (std::uint64_t i = 0; i < 2; ++i) authority_.frame();
+  Replica follower(make(), options());
+  follower.receive(authority_.welcome(0), outbox_);
+  follower.receive(authority_.snapshot(), outbox_);
+  follower.receive(old, outbox_);
+  EXPECT_EQ(follower.progress().phase, Phase::kFailed);
+  EXPECT_NE(follower.progress().reason.find("older than the frames that are kept"),
+            std::string::npos);
 }
 
 TEST_F(ReplicaTest, IsOverAfterByeAndAfterRefusal) {

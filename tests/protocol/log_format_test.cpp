@@ -3,43 +3,51 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 
+#include "protocol/little_endian.hpp"
 #include "tests/protocol/samples.hpp"
 
 namespace cycloid::protocol {
 namespace {
 
-constexpr std::uint64_t kTicks = 5;
+constexpr std::uint64_t kTicks = 7;
 
-/// Whole ticks among the first `bytes` of the sample.
-std::size_t whole_ticks(const samples::LogSample& sample, std::size_t bytes) {
-  std::size_t ticks = 0;
-  for (std::size_t i = 1; i + 1 < sample.ends.size(); ++i) ticks += sample.ends[i] <= bytes ? 1 : 0;
-  return ticks;
-}
-
-void expect_prefix(const Log& log, std::size_t ticks) {
+void expect_log_prefix(const Log& log, std::uint64_t ticks) {
   ASSERT_EQ(log.ticks.size(), ticks);
-  for (std::size_t i = 0; i < ticks; ++i) {
-    EXPECT_EQ(log.ticks[i].frame, samples::log_tick(i + 1).frame);
-    EXPECT_EQ(log.ticks[i].digest, 1001 + i);
+  EXPECT_EQ(log.last_tick, ticks);
+  for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
+    const LogTick expected = samples::log_tick(tick);
+    EXPECT_EQ(log.ticks[tick - 1].frame, expected.frame) << tick;
+    EXPECT_EQ(log.ticks[tick - 1].digest, expected.digest);
   }
 }
 
 TEST(LogFormat, AWholeLogComesBack) {
-  const samples::LogSample sample = samples::log_sample(kTicks);
+  const samples::LogSample sample = samples::log_sample(kTicks, 0x5a17, 100);
   const Log log = read_log(sample.bytes);
   EXPECT_EQ(log.state, LogState::kComplete) << log.reason;
   EXPECT_EQ(log.reason, "");
   EXPECT_EQ(log.good_bytes, sample.bytes.size());
-  EXPECT_EQ(log.header.scene_digest, 0x77u);
-  EXPECT_EQ(log.header.salt, 0x5a17u);
-  EXPECT_EQ(log.header.scene_name, "two balls");
-  EXPECT_EQ(log.header.scene, samples::log_header().scene);
-  expect_prefix(log, kTicks);
+  EXPECT_EQ(log.lost_bytes, 0u);
+  const LogHeader wanted = samples::log_header();
+  EXPECT_EQ(log.header.scene_digest, wanted.scene_digest);
+  EXPECT_EQ(log.header.salt, wanted.salt);
+  EXPECT_EQ(log.header.schema, kLogSchema);
+  EXPECT_EQ(log.header.tick_rate_millihertz, wanted.tick_rate_millihertz);
+  EXPECT_EQ(log.header.start_unix_ns, wanted.start_unix_ns);
+  EXPECT_EQ(log.header.log_id, wanted.log_id);
+  EXPECT_EQ(log.header.parent_log_id, 0u);
+  EXPECT_EQ(log.header.build, wanted.build);
+  EXPECT_EQ(log.header.room, wanted.room);
+  EXPECT_EQ(log.header.scene_name, wanted.scene_name);
+  EXPECT_EQ(log.header.scene, wanted.scene);
+  expect_log_prefix(log, kTicks);
   ASSERT_TRUE(log.footer);
   EXPECT_EQ(log.footer->ticks, kTicks);
   EXPECT_EQ(log.footer->digest, 1000 + kTicks);
+  EXPECT_EQ(log.footer->keyframes, log.keyframes);
+  EXPECT_EQ(log.keyframes.size(), kTicks / 2);
 }
 
 TEST(LogFormat, AMatchWithoutTicksIsComplete) {
@@ -48,14 +56,18 @@ TEST(LogFormat, AMatchWithoutTicksIsComplete) {
 
 /// A kill at any moment leaves a prefix, cut anywhere.
 TEST(LogFormat, CutAtEveryByteThePrefixIsGood) {
-  const samples::LogSample sample = samples::log_sample(kTicks);
+  const samples::LogSample sample = samples::log_sample(kTicks, 0x5a17, 60);
   for (std::size_t size = sample.ends[0]; size < sample.bytes.size(); ++size) {
     const Log log = read_log(std::span<const std::byte>(sample.bytes).first(size));
-    const bool at_end = std::ranges::find(sample.ends, size) != sample.ends.end();
+    const auto next = std::ranges::upper_bound(sample.ends, size);
+    const auto record = static_cast<std::size_t>(next - sample.ends.begin() - 1);
+    const bool whole_head = size == sample.ends[0] + kBlockHeadBytes;
+    const bool at_end = sample.ends[record] == size || whole_head;
     EXPECT_EQ(log.state, at_end ? LogState::kOpen : LogState::kTorn) << size;
     EXPECT_FALSE(log.footer);
-    expect_prefix(log, whole_ticks(sample, size));
-    EXPECT_EQ(log.good_bytes, sample.ends[log.ticks.size()]) << size;
+    expect_log_prefix(log, sample.ticks_until[record]);
+    EXPECT_EQ(log.good_bytes, whole_head ? size : sample.ends[record]) << size;
+    EXPECT_EQ(log.lost_bytes, size - log.good_bytes);
     EXPECT_FALSE(log.reason.empty());
   }
 }
@@ -72,7 +84,7 @@ TEST(LogFormat, CutInTheHeaderItIsNoLog) {
 /// Every bit of a small log: no flip goes unnoticed, and each is told apart by where it is. A
 /// format version that is not ours is another format.
 TEST(LogFormat, EveryBitFlipIsDetectedAndPlaced) {
-  samples::LogSample sample = samples::log_sample(kTicks);
+  samples::LogSample sample = samples::log_sample(kTicks, 0x5a17, 40);
   const std::size_t last_record = sample.ends[sample.ends.size() - 2];
   for (std::size_t bit = 0; bit < sample.bytes.size() * 8; ++bit) {
     const std::size_t byte = bit / 8;
@@ -82,7 +94,11 @@ TEST(LogFormat, EveryBitFlipIsDetectedAndPlaced) {
     if (byte >= 8 && byte < 12) expected = LogState::kIncompatible;
     EXPECT_EQ(log.state, expected) << "byte " << byte << " bit " << bit % 8 << ": " << log.reason;
     EXPECT_FALSE(log.footer);
-    if (byte >= sample.ends[0]) expect_prefix(log, whole_ticks(sample, byte));
+    if (byte >= sample.ends[0]) {
+      const auto next = std::ranges::upper_bound(sample.ends, byte);
+      expect_log_prefix(
+          log, sample.ticks_until[static_cast<std::size_t>(next - sample.ends.begin() - 1)]);
+    }
     sample.bytes[byte] ^= static_cast<std::byte>(1u << (bit % 8));
   }
 }
@@ -95,7 +111,8 @@ TEST(LogFormat, AZeroedRecordInTheMiddleIsCorruption) {
   const Log log = read_log(sample.bytes);
   EXPECT_EQ(log.state, LogState::kCorrupt);
   EXPECT_EQ(log.reason, "a damaged record at byte " + std::to_string(sample.ends[2]));
-  expect_prefix(log, 2);
+  EXPECT_EQ(log.lost_bytes, sample.bytes.size() - sample.ends[2]);
+  expect_log_prefix(log, 2);
 }
 
 TEST(LogFormat, ALostRecordIsCorruption) {
@@ -104,7 +121,7 @@ TEST(LogFormat, ALostRecordIsCorruption) {
                      sample.bytes.begin() + static_cast<std::ptrdiff_t>(sample.ends[3]));
   const Log log = read_log(sample.bytes);
   EXPECT_EQ(log.state, LogState::kCorrupt);
-  expect_prefix(log, 2);
+  expect_log_prefix(log, 2);
 }
 
 /// What a recycled disk block leaves behind the end: whole records, but of another file.
@@ -118,30 +135,25 @@ TEST(LogFormat, ATailOfAnotherLogIsNotTaken) {
   const Log log = read_log(sample.bytes);
   EXPECT_EQ(log.state, LogState::kTorn);
   EXPECT_EQ(log.good_bytes, sample.ends[3]);
-  expect_prefix(log, 3);
+  expect_log_prefix(log, 3);
 }
 
 TEST(LogFormat, BytesBehindTheFooterAreCorruption) {
-  samples::LogSample sample = samples::log_sample(kTicks);
-  sample.bytes.push_back(std::byte{0});
-  EXPECT_EQ(read_log(sample.bytes).state, LogState::kCorrupt);
+  for (const std::byte more : {std::byte{0}, std::byte{0x40}}) {
+    samples::LogSample sample = samples::log_sample(kTicks);
+    sample.bytes.push_back(more);
+    EXPECT_EQ(read_log(sample.bytes).state, LogState::kCorrupt);
+  }
 }
 
 TEST(LogFormat, AFooterOfAnotherMatchIsCorruption) {
-  Bytes bytes;
-  LogEncoder encoder(samples::log_header(), bytes);
-  encoder.tick(samples::log_tick(1), bytes);
-  encoder.footer({1, 4711}, bytes);
-  EXPECT_EQ(read_log(bytes).state, LogState::kCorrupt);
-}
-
-TEST(LogFormat, ATickOutOfOrderIsCorruption) {
-  Bytes bytes;
-  LogEncoder encoder(samples::log_header(), bytes);
-  encoder.tick(samples::log_tick(2), bytes);
-  const Log log = read_log(bytes);
-  EXPECT_EQ(log.state, LogState::kCorrupt);
-  EXPECT_EQ(log.reason.substr(0, 19), "tick 2 instead of 1");
+  for (const LogFooter& footer : {LogFooter{1, 4711, {}}, LogFooter{2, 1001, {}}}) {
+    Bytes bytes;
+    LogEncoder encoder(samples::log_header(), bytes);
+    encoder.tick(samples::log_tick(1), bytes);
+    encoder.footer(footer, bytes);
+    EXPECT_EQ(read_log(bytes).state, LogState::kCorrupt);
+  }
 }
 
 TEST(LogFormat, OtherVersionsAreNamedWithBothValues) {
@@ -152,12 +164,50 @@ TEST(LogFormat, OtherVersionsAreNamedWithBothValues) {
   Log log = read_log(bytes);
   EXPECT_EQ(log.state, LogState::kIncompatible);
   EXPECT_EQ(log.reason, "solver version " + std::to_string(solver::kSolverVersion + 1) + ", here " +
-                            std::to_string(solver::kSolverVersion));
+                            std::to_string(solver::kSolverVersion) + " (written by GNU 12.2 -O3)");
   header = samples::log_header();
   header.protocol_version = kProtocolVersion + 1;
   bytes.clear();
   LogEncoder other(header, bytes);
   EXPECT_EQ(read_log(bytes).state, LogState::kIncompatible);
+  header = samples::log_header();
+  header.schema ^= 1;
+  bytes.clear();
+  LogEncoder records(header, bytes);
+  EXPECT_EQ(read_log(bytes).state, LogState::kIncompatible);
+  EXPECT_EQ(read_log(bytes).reason.substr(0, 10), "log schema");
+}
+
+/// A version in the table is read, one that is not is refused.
+TEST(LogFormat, ABitCompatibleSolverVersionIsRead) {
+  LogHeader header = samples::log_header();
+  header.solver_version = 4;
+  Bytes bytes;
+  LogEncoder encoder(header, bytes);
+  encoder.footer({0, 0, {}}, bytes);
+  EXPECT_EQ(scan_log(bytes).state, LogState::kIncompatible);
+  const std::array<std::uint32_t, 2> with_four = {4, solver::kSolverVersion};
+  const LogSummary log = scan_log(bytes, with_four);
+  EXPECT_EQ(log.state, LogState::kComplete) << log.reason;
+  EXPECT_EQ(log.header.solver_version, 4u);
+  EXPECT_EQ(std::ranges::count(kBitCompatibleSolverVersions, solver::kSolverVersion), 1);
+}
+
+/// The first bytes of a log as format 1 wrote it.
+TEST(LogFormat, AnOlderFormatIsNamed) {
+  samples::LogSample sample = samples::log_sample(1);
+  sample.bytes[8] = std::byte{1};
+  const Log log = read_log(sample.bytes);
+  EXPECT_EQ(log.state, LogState::kIncompatible);
+  EXPECT_EQ(log.reason, "log format 1, here 2");
+}
+
+TEST(LogFormat, TextThatIsNoUtf8IsADamagedHeader) {
+  LogHeader header = samples::log_header();
+  header.room = "\xff";
+  Bytes bytes;
+  LogEncoder encoder(header, bytes);
+  EXPECT_EQ(read_log(bytes).state, LogState::kCorrupt);
 }
 
 }  // namespace

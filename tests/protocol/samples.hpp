@@ -95,6 +95,11 @@ inline LogHeader log_header(std::uint64_t salt = 0x5a17) {
   LogHeader header;
   header.scene_digest = 0x77;
   header.salt = salt;
+  header.tick_rate_millihertz = 59940;
+  header.start_unix_ns = -5;
+  header.log_id = 0x1d;
+  header.build = "GNU 12.2 -O3";
+  header.room = "arena-1";
   header.scene_name = "two balls";
   header.scene.assign(21, std::byte{0x33});
   return header;
@@ -105,24 +110,41 @@ inline LogHeader log_header(std::uint64_t salt = 0x5a17) {
 struct LogSample {
   Bytes bytes;
   std::vector<std::size_t> ends;
+  std::vector<std::uint64_t> ticks_until;  ///< Whole ticks up to each end.
 };
 
+/// Inputs that change, in every field at some tick.
 inline LogTick log_tick(std::uint64_t tick) {
   InputFrame logged = frame(tick);
-  logged.changes.clear();  // Format 1 of the log knows none.
+  const auto number = static_cast<std::int16_t>(tick * 2711);
+  logged.seats[0].input.axes[tick % 4] = number;
+  logged.seats[1].input.buttons = static_cast<std::uint16_t>(number);
+  logged.seats[2].origin = tick % 3 == 0 ? Origin::kNeutral : Origin::kAbsent;
+  if (tick % 5 == 1) logged.seats.resize(tick % 2 == 0 ? 3 : 5);
+  if (tick % 2 == 0) logged.events.clear();
+  if (tick % 3 == 0) logged.changes.clear();
   return {logged, 1000 + tick};
 }
 
-inline LogSample log_sample(std::uint64_t ticks, std::uint64_t salt = 0x5a17) {
+/// @param state_bytes  Of a keyframe after every second tick; 0: none.
+inline LogSample log_sample(std::uint64_t ticks, std::uint64_t salt = 0x5a17,
+                            std::size_t state_bytes = 0) {
   LogSample sample;
   LogEncoder encoder(log_header(salt), sample.bytes);
-  sample.ends.push_back(sample.bytes.size());
+  const auto mark = [&](std::uint64_t until) {
+    sample.ends.push_back(sample.bytes.size());
+    sample.ticks_until.push_back(until);
+  };
+  mark(0);
   for (std::uint64_t tick = 1; tick <= ticks; ++tick) {
     encoder.tick(log_tick(tick), sample.bytes);
-    sample.ends.push_back(sample.bytes.size());
+    mark(tick);
+    if (state_bytes == 0 || tick % 2 != 0) continue;
+    encoder.keyframe(1000 + tick, Bytes(state_bytes, static_cast<std::byte>(tick)), sample.bytes);
+    mark(tick);
   }
-  encoder.footer({ticks, 1000 + ticks}, sample.bytes);
-  sample.ends.push_back(sample.bytes.size());
+  encoder.footer({ticks, 1000 + ticks, {}}, sample.bytes);
+  mark(ticks);
   return sample;
 }
 

@@ -4,7 +4,6 @@
 #include <unistd.h>
 
 #include <algorithm>
-#include <cerrno>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -12,46 +11,70 @@
 #include <system_error>
 #include <vector>
 
+#include "tests/server/log_disks.hpp"
+
 namespace cycloid::server {
 namespace {
-
-protocol::LogTick tick_of(std::uint64_t tick) {
-  protocol::LogTick result;
-  result.frame.tick = tick;
-  result.frame.seats.resize(2);
-  result.digest = 100 + tick;
-  return result;
-}
 
 class LogWriterTest : public testing::Test {
  protected:
   void SetUp() override {
     const auto* test = testing::UnitTest::GetInstance()->current_test_info();
-    options_.path = testing::TempDir() + "cycloid-" + std::to_string(::getpid()) + test->name();
+    folder_ = testing::TempDir() + "cycloid-" + std::to_string(::getpid()) + test->name();
+    std::filesystem::remove_all(folder_);
+    std::filesystem::create_directory(folder_);
+    options_.path = folder_ + "/a.cylog";
+    options_.disk = disk_;
     header_.salt = 7;
     header_.scene_name = "none";
-    std::filesystem::remove(options_.path);
   }
-  void TearDown() override { std::filesystem::remove(options_.path); }
+  void TearDown() override { std::filesystem::remove_all(folder_); }
 
-  protocol::Log read() const {
-    std::ifstream stream(options_.path, std::ios::binary);
+  protocol::Log read(const std::string& path) const {
+    std::ifstream stream(path, std::ios::binary);
     const std::vector<char> text{std::istreambuf_iterator<char>(stream), {}};
     return protocol::read_log(std::as_bytes(std::span(text)));
   }
+  protocol::Log read() const { return read(options_.path); }
+  /// Names in the folder, temporary ones included.
+  std::size_t files() const {
+    return static_cast<std::size_t>(
+        std::distance(std::filesystem::directory_iterator(folder_), {}));
+  }
 
+  std::string folder_;
+  std::shared_ptr<ScriptedDisk> disk_ = std::make_shared<ScriptedDisk>();
   LogWriterOptions options_;
   protocol::LogHeader header_;
 };
 
+void write_ticks(LogWriter& writer, std::uint64_t first, std::uint64_t last) {
+  for (std::uint64_t tick = first; tick <= last; ++tick) {
+    writer.tick(numbered_tick(tick));
+    if (writer.wants_keyframe(tick))
+      writer.keyframe(tick, numbered_tick(tick).digest, numbered_state(tick));
+  }
+}
+
+protocol::LogFooter footer_of(std::uint64_t tick) {
+  return {tick, numbered_tick(tick).digest, {}};
+}
+
 TEST_F(LogWriterTest, AClosedLogIsComplete) {
-  LogWriter writer(options_, header_);
-  for (std::uint64_t tick = 1; tick <= 1000; ++tick) writer.tick(tick_of(tick));
-  writer.close({1000, 1100});
-  EXPECT_TRUE(writer.durable());
-  const protocol::Log log = read();
-  EXPECT_EQ(log.state, protocol::LogState::kComplete) << log.reason;
-  EXPECT_EQ(log.ticks.size(), 1000u);
+  for (const LogSync sync : {LogSync::kInterval, LogSync::kEveryTick, LogSync::kNone}) {
+    std::filesystem::remove(options_.path);
+    options_.sync = sync;
+    LogWriter writer(options_, header_);
+    const std::uint64_t ticks = sync == LogSync::kEveryTick ? 50 : 1000;
+    write_ticks(writer, 1, ticks);
+    writer.close(footer_of(ticks));
+    EXPECT_TRUE(writer.durable());
+    const protocol::Log log = read();
+    EXPECT_EQ(log.state, protocol::LogState::kComplete) << log.reason;
+    EXPECT_EQ(log.ticks.size(), ticks);
+    EXPECT_EQ(wrong_in(log), "");
+    EXPECT_EQ(files(), 1u);
+  }
 }
 
 TEST_F(LogWriterTest, TheHeaderIsThereBeforeAnyTick) {
@@ -62,7 +85,7 @@ TEST_F(LogWriterTest, TheHeaderIsThereBeforeAnyTick) {
 TEST_F(LogWriterTest, WithoutACloseTheLogSaysThatItIsOpen) {
   {
     LogWriter writer(options_, header_);
-    writer.tick(tick_of(1));
+    writer.tick(numbered_tick(1));
   }
   const protocol::Log log = read();
   EXPECT_EQ(log.state, protocol::LogState::kOpen);
@@ -73,87 +96,57 @@ TEST_F(LogWriterTest, AnExistingFileIsLeftAlone) {
   std::ofstream(options_.path) << "mine";
   EXPECT_THROW(LogWriter(options_, header_), std::system_error);
   EXPECT_EQ(std::filesystem::file_size(options_.path), 4u);
+  EXPECT_EQ(files(), 1u);
 }
 
 TEST_F(LogWriterTest, EveryTickSyncsBeforeTheCallReturns) {
   auto syncs = std::make_shared<std::atomic<int>>(0);
   options_.sync = LogSync::kEveryTick;
-  options_.calls.sync = [syncs](int) {
+  disk_->on_sync = [syncs](int) {
     ++*syncs;
     return 0;
   };
   LogWriter writer(options_, header_);
   for (int tick = 1; tick <= 20; ++tick) {
     const int before = *syncs;
-    writer.tick(tick_of(static_cast<std::uint64_t>(tick)));
+    writer.tick(numbered_tick(static_cast<std::uint64_t>(tick)));
     EXPECT_GT(*syncs, before);
     EXPECT_EQ(read().ticks.size(), static_cast<std::size_t>(tick));
   }
 }
 
-TEST_F(LogWriterTest, ShortAndInterruptedWritesAreFinished) {
-  auto calls = std::make_shared<std::atomic<int>>(0);
-  options_.calls.write = [calls](int file, const void* bytes, std::size_t count) -> ssize_t {
-    if (++*calls % 3 == 0) {
-      errno = EINTR;
-      return -1;
-    }
-    return ::write(file, bytes, std::min<std::size_t>(count, 5));
+TEST_F(LogWriterTest, WithoutSyncsThereIsNoneButAtBothEnds) {
+  auto syncs = std::make_shared<std::atomic<int>>(0);
+  options_.sync = LogSync::kNone;
+  options_.interval = std::chrono::milliseconds(1);
+  disk_->on_sync = [syncs](int) {
+    ++*syncs;
+    return 0;
   };
   LogWriter writer(options_, header_);
-  for (std::uint64_t tick = 1; tick <= 50; ++tick) writer.tick(tick_of(tick));
-  writer.close({50, 150});
-  EXPECT_EQ(read().state, protocol::LogState::kComplete);
-}
-
-/// The disk is full after so many bytes, for every such number up to a few records: always a good
-/// prefix, never a hang, and the writer says so.
-TEST_F(LogWriterTest, AFullDiskLeavesAGoodPrefix) {
-  protocol::Bytes bytes;
-  const protocol::LogEncoder header(header_, bytes);
-  options_.calls.sync = [](int) { return 0; };
-  for (std::size_t room = bytes.size(); room < bytes.size() + 120; ++room) {
-    std::filesystem::remove(options_.path);
-    auto left = std::make_shared<std::size_t>(room);
-    options_.calls.write = [left](int file, const void* from, std::size_t count) -> ssize_t {
-      const std::size_t taken = std::min(count, *left);
-      *left -= taken;
-      if (taken != 0) return ::write(file, from, taken);
-      errno = ENOSPC;
-      return -1;
-    };
-    LogWriter writer(options_, header_);
-    for (std::uint64_t tick = 1; tick <= 10; ++tick) writer.tick(tick_of(tick));
-    writer.close({10, 110});
-    EXPECT_FALSE(writer.durable());
-    EXPECT_NE(writer.error().find("No space left"), std::string::npos) << writer.error();
-    const protocol::Log log = read();
-    EXPECT_TRUE(log.state == protocol::LogState::kOpen || log.state == protocol::LogState::kTorn);
-    EXPECT_EQ(log.ticks.size(), (room - bytes.size()) / 51);
-  }
+  write_ticks(writer, 1, 300);
+  std::this_thread::sleep_for(std::chrono::milliseconds(20));
+  EXPECT_EQ(*syncs, 1);
+  writer.close(footer_of(300));
+  EXPECT_EQ(*syncs, 2);
+  EXPECT_EQ(writer.metrics().syncs, 1u);
 }
 
 TEST_F(LogWriterTest, AFailedSyncIsNotTriedAgain) {
   auto syncs = std::make_shared<std::atomic<int>>(0);
-  options_.calls.sync = [syncs](int) {
-    if (++*syncs == 1) return 0;  // Of the header.
-    errno = EIO;
-    return -1;
-  };
+  disk_->on_sync = [syncs](int) { return ++*syncs == 1 ? 0 : EIO; };  // The first is the header's.
   LogWriter writer(options_, header_);
-  writer.tick(tick_of(1));
-  writer.close({1, 101});
+  writer.tick(numbered_tick(1));
+  writer.close(footer_of(1));
   EXPECT_FALSE(writer.durable());
+  EXPECT_NE(writer.error().find(options_.path + ": sync: "), std::string::npos) << writer.error();
   EXPECT_EQ(*syncs, 2);
 }
 
 TEST_F(LogWriterTest, AHeaderThatCannotBeWrittenIsNoLog) {
-  options_.calls.sync = [](int) {
-    errno = EIO;
-    return -1;
-  };
+  disk_->on_sync = [](int) { return EIO; };
   EXPECT_THROW(LogWriter(options_, header_), std::system_error);
-  EXPECT_FALSE(std::filesystem::exists(options_.path));
+  EXPECT_EQ(files(), 0u);
 }
 
 /// A disk that stands still: the match must not wait for it without bound.
@@ -165,24 +158,115 @@ TEST_F(LogWriterTest, AFullQueueEndsTheLogInsteadOfTheMatch) {
   };
   auto gate = std::make_shared<Gate>();
   options_.queue_bytes_max = 1000;
-  options_.calls.write = [gate](int file, const void* bytes, std::size_t count) {
+  disk_->on_write = [gate](int file, std::span<const std::byte> bytes, std::size_t& written) {
     std::unique_lock lock(gate->mutex);
     gate->opened.wait(lock, [&] { return gate->open; });
-    return ::write(file, bytes, count);
+    return system_disk()->write(file, bytes, written);
   };
   LogWriter writer(options_, header_);
   {
     const std::scoped_lock lock(gate->mutex);
     gate->open = false;
   }
-  for (std::uint64_t tick = 1; tick <= 100 && writer.durable(); ++tick) writer.tick(tick_of(tick));
+  for (std::uint64_t tick = 1; tick <= 200 && writer.durable(); ++tick)
+    writer.tick(numbered_tick(tick));
   EXPECT_FALSE(writer.durable());
   EXPECT_NE(writer.error().find("does not keep up"), std::string::npos) << writer.error();
+  EXPECT_GT(writer.metrics().queue_bytes_most, 900u);
+  EXPECT_LE(writer.metrics().queue_bytes_most, 1000u);
   {
     const std::scoped_lock lock(gate->mutex);
     gate->open = true;
   }
   gate->opened.notify_all();
+}
+
+TEST_F(LogWriterTest, KeyframesKeepTheirIntervalAndTheirBudget) {
+  options_.keyframes = {50, 4};
+  LogWriter writer(options_, header_);
+  std::vector<std::uint64_t> ticks;
+  std::uint64_t bytes = 0;
+  for (std::uint64_t tick = 1; tick <= 5000; ++tick) {
+    writer.tick(numbered_tick(tick));
+    if (!writer.wants_keyframe(tick)) continue;
+    const std::vector<std::byte> state(tick < 2000 ? 100 : 1000, std::byte{1});
+    writer.keyframe(tick, numbered_tick(tick).digest, state);
+    ticks.push_back(tick);
+    bytes += state.size();
+    EXPECT_LE(bytes, 4 * tick + state.size());
+  }
+  writer.close(footer_of(5000));
+  ASSERT_GT(ticks.size(), 40u);
+  EXPECT_EQ(ticks[0], 50u);
+  EXPECT_EQ(ticks[1], 100u);
+  EXPECT_EQ(ticks.back() - ticks[ticks.size() - 2], 250u);
+  const protocol::Log log = read();
+  ASSERT_EQ(log.keyframes.size(), ticks.size());
+  for (std::size_t i = 0; i < ticks.size(); ++i) EXPECT_EQ(log.keyframes[i].tick, ticks[i]);
+  EXPECT_EQ(writer.metrics().keyframes, ticks.size());
+  EXPECT_EQ(writer.metrics().keyframe_bytes, bytes);
+}
+
+TEST_F(LogWriterTest, WithoutABudgetThereAreNoKeyframes) {
+  options_.keyframes.bytes_per_tick = 0;
+  LogWriter writer(options_, header_);
+  writer.tick(numbered_tick(1));
+  EXPECT_FALSE(writer.wants_keyframe(1));
+  EXPECT_FALSE(writer.wants_keyframe(1000000));
+}
+
+/// Two files, each whole by itself; the second names the first.
+TEST_F(LogWriterTest, ARotatedLogGoesOnInAnother) {
+  header_.log_id = 0x1234;
+  options_.keyframes.bytes_per_tick = 0;  // A rotation has one all the same.
+  const std::string second = folder_ + "/b.cylog";
+  LogWriter writer(options_, header_);
+  write_ticks(writer, 1, 120);
+  EXPECT_FALSE(writer.rotate(second));
+  EXPECT_EQ(writer.rotate(folder_ + "/c.cylog"), std::errc::device_or_resource_busy);
+  write_ticks(writer, 121, 300);
+  writer.close(footer_of(300));
+  EXPECT_EQ(writer.metrics().rotations, 1u);
+  EXPECT_EQ(files(), 2u);
+  const protocol::Log a = read();
+  EXPECT_EQ(a.state, protocol::LogState::kComplete) << a.reason;
+  EXPECT_EQ(a.last_tick, 121u);
+  EXPECT_EQ(wrong_in(a), "");
+  const protocol::Log b = read(second);
+  EXPECT_EQ(b.state, protocol::LogState::kComplete) << b.reason;
+  EXPECT_EQ(b.header.branch_tick, 121u);
+  EXPECT_EQ(b.header.parent_log_id, 0x1234u);
+  EXPECT_NE(b.header.log_id, 0x1234u);
+  EXPECT_NE(b.header.salt, a.header.salt);
+  EXPECT_GT(b.header.start_unix_ns, 0);
+  EXPECT_EQ(b.last_tick, 300u);
+  EXPECT_EQ(wrong_in(b), "");
+}
+
+TEST_F(LogWriterTest, ARotationToWhereNothingCanBeLeavesTheLogAsItIs) {
+  LogWriter writer(options_, header_);
+  EXPECT_EQ(writer.rotate(options_.path), std::errc::file_exists);
+  EXPECT_EQ(writer.rotate(folder_ + "/nowhere/b.cylog"), std::errc::no_such_file_or_directory);
+  EXPECT_FALSE(writer.rotate(folder_ + "/b.cylog"));  // And then the match ends.
+  writer.tick(numbered_tick(1));
+  writer.close(footer_of(1));
+  EXPECT_EQ(read().state, protocol::LogState::kComplete);
+  EXPECT_EQ(files(), 1u);
+}
+
+/// As after a rewind: the first record is the state that it goes on from.
+TEST_F(LogWriterTest, ABranchBeginsWithItsState) {
+  header_.parent_log_id = 9;
+  header_.branch_tick = 40;
+  const protocol::LogKeyframe first{40, numbered_tick(40).digest, numbered_tick(40).frame.seats,
+                                    numbered_state(40)};
+  LogWriter writer(options_, header_, &first);
+  write_ticks(writer, 41, 60);
+  writer.close(footer_of(60));
+  const protocol::Log log = read();
+  EXPECT_EQ(log.state, protocol::LogState::kComplete) << log.reason;
+  EXPECT_EQ(log.tick_count(), 20u);
+  EXPECT_EQ(wrong_in(log), "");
 }
 
 }  // namespace

@@ -1,0 +1,136 @@
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "protocol/log_format.hpp"
+#include "tests/protocol/samples.hpp"
+
+namespace cycloid::protocol {
+namespace {
+
+using Step = LogCursor::Step;
+
+/// From every keyframe on, all that follows is as from the start.
+TEST(LogCursor, FromEveryKeyframeTheRestIsTheSame) {
+  const samples::LogSample sample = samples::log_sample(200, 0x5a17, 700);
+  const LogSummary log = scan_log(sample.bytes);
+  ASSERT_EQ(log.keyframes.size(), 100u);
+  for (const KeyframePlace& place : log.keyframes) {
+    LogCursor cursor(sample.bytes, log.start, place);
+    ASSERT_EQ(cursor.next(), Step::kKeyframe) << cursor.reason();
+    EXPECT_EQ(cursor.keyframe().tick, place.tick);
+    EXPECT_EQ(cursor.keyframe().digest, 1000 + place.tick);
+    EXPECT_EQ(cursor.keyframe().state, Bytes(700, static_cast<std::byte>(place.tick)));
+    std::uint64_t tick = place.tick;
+    for (Step step = cursor.next(); step != Step::kEnd; step = cursor.next()) {
+      if (step != Step::kTick) continue;
+      ASSERT_EQ(cursor.tick().frame, samples::log_tick(++tick).frame);
+    }
+    EXPECT_EQ(tick, 200u);
+    EXPECT_EQ(cursor.state(), LogState::kComplete) << cursor.reason();
+  }
+}
+
+TEST(LogCursor, KeyframeBeforeIsTheLastOneThatIsNotLater) {
+  const LogSummary log = scan_log(samples::log_sample(20, 0x5a17, 10).bytes);
+  EXPECT_EQ(log.keyframe_before(1), nullptr);
+  EXPECT_EQ(log.keyframe_before(2)->tick, 2u);
+  EXPECT_EQ(log.keyframe_before(9)->tick, 8u);
+  EXPECT_EQ(log.keyframe_before(1000)->tick, 20u);
+}
+
+TEST(LogCursor, APlaceWithoutAKeyframeIsCorrupt) {
+  const samples::LogSample sample = samples::log_sample(20, 0x5a17, 10);
+  const LogSummary log = scan_log(sample.bytes);
+  KeyframePlace place = log.keyframes[3];
+  for (const std::uint64_t at : {place.at + 1, std::uint64_t{0}, std::uint64_t{1} << 40}) {
+    LogCursor cursor(sample.bytes, log.start, {place.tick, at, place.before});
+    EXPECT_EQ(cursor.next(), Step::kEnd);
+    EXPECT_EQ(cursor.state(), LogState::kCorrupt) << at;
+  }
+  place.before ^= 1;
+  LogCursor cursor(sample.bytes, log.start, place);
+  EXPECT_EQ(cursor.next(), Step::kEnd);
+}
+
+/// A log that goes on from tick 41 of another.
+Bytes branch(const LogKeyframe& keyframe, bool with_keyframe) {
+  LogHeader header = samples::log_header();
+  header.parent_log_id = 0x1c;
+  header.branch_tick = 41;
+  Bytes bytes;
+  LogEncoder encoder(header, bytes);
+  EXPECT_EQ(encoder.next_tick(), 42u);
+  if (with_keyframe) encoder.first_keyframe(keyframe, bytes);
+  for (std::uint64_t tick = 42; tick <= 50; ++tick) encoder.tick(samples::log_tick(tick), bytes);
+  encoder.footer({50, 1050, {}}, bytes);
+  return bytes;
+}
+
+TEST(LogCursor, ABranchBeginsWithTheStateOfItsTick) {
+  LogKeyframe keyframe{41, 4711, samples::log_tick(41).frame.seats, Bytes(20, std::byte{1})};
+  const Log log = read_log(branch(keyframe, true));
+  ASSERT_EQ(log.state, LogState::kComplete) << log.reason;
+  EXPECT_EQ(log.header.parent_log_id, 0x1cu);
+  EXPECT_EQ(log.tick_count(), 9u);
+  EXPECT_EQ(log.last_tick, 50u);
+  EXPECT_EQ(log.ticks.front().frame, samples::log_tick(42).frame);
+  EXPECT_EQ(log.keyframes.front().tick, 41u);
+  EXPECT_EQ(read_log(branch(keyframe, false)).state, LogState::kCorrupt);
+  keyframe.tick = 40;
+  EXPECT_EQ(read_log(branch(keyframe, true)).state, LogState::kCorrupt);
+}
+
+TEST(LogCursor, AKeyframeThatIsNotOfItsTickIsCorruption) {
+  Bytes bytes;
+  LogEncoder encoder(samples::log_header(), bytes);
+  encoder.tick(samples::log_tick(1), bytes);
+  encoder.keyframe(1002, Bytes(3), bytes);
+  EXPECT_EQ(read_log(bytes).state, LogState::kCorrupt);
+  EXPECT_EQ(read_log(bytes).last_tick, 1u);
+}
+
+/// Whatever a room can put into a frame: seats come and go, events of every kind, changes, and
+/// every field from any value to any other.
+TEST(LogCursor, AnyFrameComesBack) {
+  std::mt19937_64 random(3);
+  Bytes bytes;
+  LogEncoder encoder(samples::log_header(), bytes);
+  std::vector<LogTick> ticks;
+  for (std::uint64_t tick = 1; tick <= 400; ++tick) {
+    LogTick made;
+    made.frame.tick = tick;
+    made.digest = random();
+    const bool same_seats = tick % 7 != 0 && !ticks.empty();
+    if (same_seats) made.frame.seats = ticks.back().frame.seats;
+    if (!same_seats) made.frame.seats.resize(random() % (scenes::kSeatsMax + 1));
+    for (SeatFrame& seat : made.frame.seats) {
+      if (random() % 3 != 0) continue;
+      seat.origin = static_cast<Origin>(1 + random() % 4);
+      for (std::int16_t& axis : seat.input.axes)
+        if (random() % 2 == 0) axis = static_cast<std::int16_t>(random());
+      seat.input.buttons = static_cast<std::uint16_t>(random());
+    }
+    const std::size_t events = made.frame.seats.empty() ? 0
+                               : tick % 50 == 0         ? kFrameEventsMax
+                                                        : random() % 3;
+    for (std::size_t i = 0; i < events; ++i)
+      made.frame.events.push_back({static_cast<EventKind>(1 + random() % 5),
+                                   static_cast<std::uint16_t>(random() % made.frame.seats.size())});
+    for (std::size_t i = 0; i < random() % 3; ++i)
+      made.frame.changes.push_back(
+          {ChangeKind::kInputDelay, static_cast<std::uint32_t>(random() >> random() % 64)});
+    encoder.tick(made, bytes);
+    ticks.push_back(std::move(made));
+  }
+  const Log log = read_log(bytes);
+  ASSERT_EQ(log.state, LogState::kOpen) << log.reason;
+  ASSERT_EQ(log.ticks.size(), ticks.size());
+  for (std::size_t i = 0; i < ticks.size(); ++i) {
+    ASSERT_EQ(log.ticks[i].frame, ticks[i].frame) << i;
+    ASSERT_EQ(log.ticks[i].digest, ticks[i].digest);
+  }
+}
+
+}  // namespace
+}  // namespace cycloid::protocol
