@@ -17,6 +17,7 @@ struct BisectOptions {
   std::string runner;
   std::uint64_t ticks = 600;
   std::size_t fields = 8;
+  LoadOptions loading;
 };
 
 struct Finding {
@@ -38,19 +39,20 @@ void bisect_worlds(const Suspect& a, const Suspect& b, std::uint64_t ticks, std:
   finding.name_b = b.name();
   const Course course_a = a.course(ticks);
   const Course course_b = b.course(ticks);
-  finding.ticks = std::min(course_a.digests.size(), course_b.digests.size()) - 1;
+  finding.ticks = std::min(course_a.digests.size(), course_b.digests.size()) - 1 - course_a.begin;
   if (const auto tick = first_difference(course_a, course_b)) {
-    finding.ticks = *tick == 0 ? 0 : *tick - 1;
+    finding.ticks = *tick == course_a.begin ? 0 : *tick - 1 - course_a.begin;
     finding.blame = blame_tick(a, b, *tick, fields);
   } else if (course_a.digests.size() != course_b.digests.size()) {
     const bool a_ends = course_a.digests.size() < course_b.digests.size();
     finding.notes.push_back((a_ends ? finding.name_a : finding.name_b) +
-                            " alone does not step beyond tick " + std::to_string(finding.ticks));
+                            " alone does not step beyond tick " +
+                            std::to_string(course_a.begin + finding.ticks));
   }
 }
 
 void compare_inputs(const Match& a, const Match& b, std::uint64_t ticks, Finding& finding) {
-  for (std::uint64_t tick = 1; tick <= ticks && !finding.input_tick; ++tick) {
+  for (std::uint64_t tick = a.begin() + 1; tick <= ticks && !finding.input_tick; ++tick) {
     finding.input_text = input_difference(a.inputs(tick, 0), b.inputs(tick, 0));
     if (!finding.input_text.empty()) finding.input_tick = tick;
   }
@@ -60,24 +62,29 @@ void compare_inputs(const Match& a, const Match& b, std::uint64_t ticks, Finding
 /// more.
 void check_record(const Match& match, std::uint64_t ticks, Finding& finding) {
   const Course course = run_course(match, ticks, {});
-  for (std::size_t tick = 1; tick < course.digests.size(); ++tick) {
-    const std::uint64_t recorded = match.log->log.ticks[static_cast<std::size_t>(tick - 1)].digest;
-    if (recorded == course.digests[tick]) continue;
-    finding.notes.push_back(match.name + " was recorded by another build, or is damaged: at tick " +
-                            std::to_string(tick) + " it says " + hex16(recorded) +
-                            ", this program makes " + hex16(course.digests[tick]) +
-                            "; to go on: cycloid bisect " + match.name +
-                            " --against PROGRAM, with the cycloid that wrote it");
+  for (std::uint64_t tick = match.begin() + 1; tick < course.digests.size(); ++tick) {
+    const std::uint64_t recorded = match.recorded_digest(tick);
+    if (recorded == course.digests[static_cast<std::size_t>(tick)]) continue;
+    finding.notes.push_back(
+        match.name + " was recorded by another build, or is damaged: at tick " +
+        std::to_string(tick) + " it says " + hex16(recorded) + ", this program makes " +
+        hex16(course.digests[static_cast<std::size_t>(tick)]) + "; to go on: cycloid bisect " +
+        match.name + " --against PROGRAM, with the cycloid that wrote it");
     return;
   }
 }
 
 Finding bisect_logs(const BisectOptions& options) {
-  const Match a = open_match(options.a);
-  const Match b = open_match(options.b);
+  const Match a = open_match(options.a, options.loading);
+  const Match b = open_match(options.b, options.loading);
   if (!a.log || !b.log) {
     throw Failure(kExitUsage, (a.log ? b : a).name +
                                   ": not a log; scenes are compared by diff, or by --against");
+  }
+  if (a.begin() != b.begin()) {
+    throw Failure(kExitUsage, a.name + " begins after tick " + std::to_string(a.begin()) + ", " +
+                                  b.name + " after tick " + std::to_string(b.begin()) +
+                                  ": cut both from one tick");
   }
   Finding finding;
   const std::uint64_t ticks_a = a.ticks(0);
@@ -95,15 +102,15 @@ Finding bisect_logs(const BisectOptions& options) {
 }
 
 Finding bisect_builds(const BisectOptions& options) {
-  const Match match = open_match(options.a);
+  const Match match = open_match(options.a, options.loading);
   Finding finding;
   const auto here = suspect_here("this program", match);
   const auto there = suspect_there(options.against, options.runner, options.a);
-  const std::uint64_t ticks = std::min(match.ticks(options.ticks), options.ticks);
+  const std::uint64_t wanted = match.begin() + options.ticks;
+  const std::uint64_t ticks = std::min(match.ticks(wanted), wanted);
   bisect_worlds(*here, *there, ticks, options.fields, finding);
-  if (!finding.blame || !match.log || finding.blame->tick == 0) return finding;
-  const std::string recorded =
-      hex16(match.log->log.ticks[static_cast<std::size_t>(finding.blame->tick - 1)].digest);
+  if (!finding.blame || !match.log || finding.blame->tick == match.begin()) return finding;
+  const std::string recorded = hex16(match.recorded_digest(finding.blame->tick));
   const std::string by = recorded == finding.blame->digest_a   ? finding.name_a
                          : recorded == finding.blame->digest_b ? finding.name_b
                                                                : "neither";
@@ -149,6 +156,7 @@ void add_bisect(CLI::App& app, Action& action) {
       action);
   command->add_option("A", options->a, "A log; with --against also a scene")->required();
   command->add_option("B", options->b, "Another log");
+  add_salvage_option(command, options->loading);
   CLI::Option* against = command->add_option(
       "--against", options->against, "The cycloid of another build, to step the same match");
   command->add_option("--runner", options->runner, "What starts it: 'qemu-aarch64'")

@@ -18,6 +18,11 @@ struct Action {
 CLI::App* add_command(CLI::App& app, const std::string& name, const std::string& summary,
                       Action& action);
 
+struct LoadOptions;
+
+/// `--salvage`, where a log is read.
+void add_salvage_option(CLI::App* command, LoadOptions& options);
+
 /// `--lanes`, beside a command's `--workers`.
 void add_lanes_option(CLI::App* command, int& lanes);
 
@@ -25,6 +30,9 @@ void add_lanes_option(CLI::App* command, int& lanes);
 void add_run(CLI::App& app, Action& action);
 void add_replay(CLI::App& app, Action& action);
 void add_verify(CLI::App& app, Action& action);
+void add_info(CLI::App& app, Action& action);
+void add_cut(CLI::App& app, Action& action);
+void add_export(CLI::App& app, Action& action);
 void add_golden(CLI::App& app, Action& action);
 void add_diff(CLI::App& app, Action& action);
 void add_trace(CLI::App& app, Action& action);

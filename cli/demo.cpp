@@ -9,8 +9,8 @@
 #include "cli/child.hpp"
 #include "cli/commands.hpp"
 #include "cli/demo_table.hpp"
-#include "cli/log_file.hpp"
 #include "cli/output.hpp"
+#include "cli/replaying.hpp"
 #include "cli/signals.hpp"
 
 namespace cycloid::cli {
@@ -76,7 +76,7 @@ class Demo {
   void remove_older_log() const {
     std::error_code error;
     if (!std::filesystem::exists(options_.log, error)) return;
-    if (protocol::read_log(read_file(options_.log)).state == protocol::LogState::kCorrupt) {
+    if (!protocol::looks_like_log(read_file(options_.log))) {
       throw Failure(kExitUsage, "--log: " + options_.log + " is there and is no log");
     }
     std::filesystem::remove(options_.log);

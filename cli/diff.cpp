@@ -18,6 +18,7 @@ struct DiffOptions {
   std::string b;
   std::uint64_t ticks = 600;
   std::size_t fields = 8;
+  LoadOptions loading;
 };
 
 /// One of the two, running.
@@ -26,9 +27,9 @@ struct Side {
   scenes::Simulation simulation;
 };
 
-Side open_side(const std::string& what) {
-  Match match = open_match(what);
-  scenes::Simulation simulation = make_simulation(match.scene, 1);
+Side open_side(const std::string& what, const LoadOptions& loading) {
+  Match match = open_match(what, loading);
+  scenes::Simulation simulation = match.start({});
   return {std::move(match), std::move(simulation)};
 }
 
@@ -49,7 +50,7 @@ bool same_state(const Side& a, const Side& b, std::size_t fields, Found& found) 
   if (a.simulation.digest() == b.simulation.digest()) return true;
   found.state_tick = a.simulation.tick();
   found.fields = a.simulation.differences(b.simulation, fields);
-  if (*found.state_tick == 0) return false;
+  if (*found.state_tick == a.match.begin()) return false;
   const auto suspect_a = suspect_here(a.match.name, a.match);
   const auto suspect_b = suspect_here(b.match.name, b.match);
   found.blame = blame_tick(*suspect_a, *suspect_b, *found.state_tick, 1);
@@ -77,9 +78,8 @@ bool step_both(Side& a, Side& b, std::uint64_t tick, Found& found) {
 /// Where two logs recorded unlike digests for what steps alike here, one was made by another world.
 bool same_record(const Side& a, const Side& b, std::uint64_t tick, Found& found) {
   if (!a.match.log || !b.match.log) return true;
-  const auto index = static_cast<std::size_t>(tick - 1);
-  const std::uint64_t digest_a = a.match.log->log.ticks[index].digest;
-  const std::uint64_t digest_b = b.match.log->log.ticks[index].digest;
+  const std::uint64_t digest_a = a.match.recorded_digest(tick);
+  const std::uint64_t digest_b = b.match.recorded_digest(tick);
   if (digest_a == digest_b) return true;
   found.other = "recorded digests differ at tick " + std::to_string(tick) + ": " + hex16(digest_a) +
                 " against " + hex16(digest_b) + "; replayed here both are " +
@@ -95,12 +95,18 @@ Found compare(Side& a, Side& b, const DiffOptions& options) {
                   std::to_string(b.simulation.dimension());
     return found;
   }
+  const std::uint64_t begin = a.match.begin();
+  if (begin != b.match.begin()) {
+    found.other = a.match.name + " begins after tick " + std::to_string(begin) + ", " +
+                  b.match.name + " after tick " + std::to_string(b.match.begin());
+    return found;
+  }
   if (!same_state(a, b, options.fields, found)) return found;
-  const std::uint64_t ticks_a = a.match.ticks(b.match.ticks(options.ticks));
+  const std::uint64_t ticks_a = a.match.ticks(b.match.ticks(begin + options.ticks));
   const std::uint64_t ticks_b = b.match.ticks(ticks_a);
-  for (std::uint64_t tick = 1; tick <= std::min(ticks_a, ticks_b); ++tick) {
+  for (std::uint64_t tick = begin + 1; tick <= std::min(ticks_a, ticks_b); ++tick) {
     if (!step_both(a, b, tick, found)) return found;
-    found.ticks = tick;
+    found.ticks = tick - begin;
     if (!same_state(a, b, options.fields, found)) return found;
     if (!same_record(a, b, tick, found)) return found;
   }
@@ -149,8 +155,8 @@ Json to_json(const Found& found) {
 }
 
 Exit diff(const DiffOptions& options, bool json) {
-  Side a = open_side(options.a);
-  Side b = open_side(options.b);
+  Side a = open_side(options.a, options.loading);
+  Side b = open_side(options.b, options.loading);
   const Found found = compare(a, b, options);
   const Exit exit = found.any() ? kExitDiverged : kExitGood;
   if (json) print_json(to_json(found), exit);
@@ -169,6 +175,7 @@ void add_diff(CLI::App& app, Action& action) {
   command->add_option("B", options->b, "The same")->required();
   command->add_option("--ticks", options->ticks, "How far to run two scenes")
       ->capture_default_str();
+  add_salvage_option(command, options->loading);
   command->add_option("--fields", options->fields, "How many differing fields to name at most")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

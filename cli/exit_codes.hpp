@@ -10,10 +10,12 @@ enum Exit : int {
   kExitCorrupt = 3,       ///< A scene, log or message is not what it should be.
   kExitIncompatible = 4,  ///< Another format, protocol or solver version, or another scene.
   kExitIo = 5,            ///< A file, a socket or a process failed, or nothing was found.
+  kExitTimeout = 124,     ///< Not done in the time given, and nothing worse.
 };
 
 /// The footer of every --help.
 inline constexpr const char* kExitCodesText =
-    "Exit codes: 0 good, 1 diverged, 2 usage, 3 corrupt, 4 incompatible, 5 input/output.";
+    "Exit codes: 0 good, 1 diverged, 2 usage, 3 corrupt, 4 incompatible, 5 input/output, "
+    "124 timeout.";
 
 }  // namespace cycloid::cli

@@ -9,7 +9,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/files.hpp"
-#include "cli/log_file.hpp"
+#include "cli/replaying.hpp"
 #include "cli/report.hpp"
 #include "cli/side_by_side.hpp"
 

@@ -1,7 +1,6 @@
 #include "cli/log_file.hpp"
 
 #include <utility>
-#include <vector>
 
 #include "cli/output.hpp"
 
@@ -11,28 +10,39 @@ using protocol::LogState;
 
 std::string LoadedLog::blemish() const {
   if (log.state == LogState::kComplete) return "";
-  const char* name = log.state == LogState::kOpen ? "not closed" : "torn";
-  return std::string(name) + " after " + std::to_string(log.ticks.size()) + " good ticks" +
-         (log.reason.empty() ? "" : ": " + log.reason);
+  const char* name = log.state == LogState::kOpen      ? "not closed"
+                     : log.state == LogState::kCorrupt ? "salvaged"
+                                                       : "torn";
+  std::string text =
+      std::string(name) + " after " + std::to_string(log.tick_count()) + " good ticks";
+  if (!log.reason.empty()) text += ": " + log.reason;
+  if (log.lost_bytes != 0)
+    text += "; the " + std::to_string(log.lost_bytes) + " bytes behind byte " +
+            std::to_string(log.good_bytes) + " are lost";
+  if (log.tick_behind && *log.tick_behind > log.last_tick + 1)
+    text += ", ticks " + std::to_string(log.last_tick + 1) + " to at least " +
+            std::to_string(*log.tick_behind - 1);
+  return text;
 }
 
-LoadedLog load_log(const std::string& file) {
-  return parse_log(file, read_file(file));
+LoadedLog load_log(const std::string& file, const LoadOptions& options) {
+  return parse_log(file, read_file(file), options);
 }
 
-LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes) {
-  protocol::Log log = protocol::read_log(bytes);
-  if (log.state == LogState::kCorrupt)
-    throw Failure(kExitCorrupt, file + ": corrupt: " + log.reason);
-  if (log.state == LogState::kIncompatible) {
+LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes,
+                    const LoadOptions& options) {
+  protocol::LogSummary log = protocol::scan_log(bytes);
+  const bool salvaged = options.salvage && log.good_bytes != 0;
+  if (log.state == LogState::kCorrupt && !salvaged) {
+    const bool helps = log.good_bytes != 0 && log.tick_count() != 0;
+    throw Failure(kExitCorrupt,
+                  file + ": corrupt: " + log.reason +
+                      (helps ? "; --salvage takes the " + std::to_string(log.tick_count()) +
+                                   " good ticks before"
+                             : ""));
+  }
+  if (log.state == LogState::kIncompatible)
     throw Failure(kExitIncompatible, file + ": incompatible: " + log.reason);
-  }
-  std::uint64_t expected = 1;
-  for (const protocol::LogTick& tick : log.ticks) {
-    if (tick.frame.tick == expected++) continue;
-    throw Failure(kExitCorrupt, file + ": corrupt: tick " + std::to_string(tick.frame.tick) +
-                                    " instead of " + std::to_string(expected - 1));
-  }
   scenes::Loaded loaded = scenes::from_binary(log.header.scene);
   if (!loaded.scene) throw Failure(kExitCorrupt, mistakes_text(file + ": scene", loaded.mistakes));
   const std::uint64_t digest = scenes::scene_digest(*loaded.scene);
@@ -40,84 +50,32 @@ LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes) {
     throw Failure(kExitIncompatible, file + ": the scene's digest is " + hex16(digest) +
                                          " here, the log says " + hex16(log.header.scene_digest));
   }
-  return {file, std::move(log), std::move(*loaded.scene)};
+  const auto good = bytes.first(static_cast<std::size_t>(log.good_bytes));
+  return {file, std::move(log),
+          std::make_shared<const std::vector<std::byte>>(good.begin(), good.end()),
+          std::move(*loaded.scene), salvaged};
 }
 
-LogWriter::LogWriter(std::string file, const scenes::Scene& scene)
-    : file_(std::move(file)), stream_(file_, std::ios::binary | std::ios::trunc) {
-  if (!stream_) throw Failure(kExitIo, file_ + ": cannot be written");
-  protocol::LogHeader header;
-  header.scene_digest = scenes::scene_digest(scene);
-  header.salt = header.scene_digest;  // The same run writes the same bytes.
-  header.scene_name = scene.name;
-  header.scene = scenes::to_binary(scene);
-  encoder_.emplace(header, bytes_);
+TickReader::TickReader(const LoadedLog& loaded)
+    : bytes_(loaded.bytes), start_(loaded.log.start), keyframes_(loaded.log.keyframes) {}
+
+void TickReader::rewind(std::uint64_t tick) {
+  const protocol::KeyframePlace* from = nullptr;
+  for (const protocol::KeyframePlace& place : keyframes_)
+    if (place.tick < tick) from = &place;
+  if (from == nullptr)
+    cursor_.emplace(*bytes_, start_);
+  else
+    cursor_.emplace(*bytes_, start_, *from);
 }
 
-void LogWriter::tick(const protocol::LogTick& tick) {
-  encoder_->tick(tick, bytes_);
-  write();
-}
-
-void LogWriter::finish(const protocol::LogFooter& footer) {
-  encoder_->footer(footer, bytes_);
-  write();
-  stream_.close();
-  if (!stream_) throw Failure(kExitIo, file_ + ": cannot be written");
-}
-
-void LogWriter::write() {
-  stream_.write(reinterpret_cast<const char*>(bytes_.data()),
-                static_cast<std::streamsize>(bytes_.size()));
-  if (!stream_) throw Failure(kExitIo, file_ + ": cannot be written");
-  bytes_.clear();
-}
-
-Replayed replay(const LoadedLog& loaded, const ReplayOptions& options) {
-  scenes::Simulation simulation = make_simulation(loaded.scene, options.workers, options.lanes);
-  Replayed result;
-  result.digest = simulation.digest();
-  std::vector<scenes::SeatInput> inputs;
-  for (const protocol::LogTick& tick : loaded.log.ticks) {
-    if (options.to != 0 && tick.frame.tick > options.to) break;
-    inputs.clear();
-    for (const protocol::SeatFrame& seat : tick.frame.seats) inputs.push_back(seat.input);
-    const solver::Error error = simulation.step(inputs);
-    result.digest = simulation.digest();
-    if (!error.ok() || result.digest != tick.digest) {
-      result.divergence = {tick.frame.tick, tick.digest, result.digest,
-                           error.ok() ? "" : error_text(error)};
-      return result;
-    }
-    result.ticks = tick.frame.tick;
-    if (options.on_tick) options.on_tick(result.ticks, result.digest);
-  }
-  return result;
-}
-
-std::string divergence_text(const Divergence& divergence) {
-  return "diverged at tick " + std::to_string(divergence.tick) + ": recorded " +
-         hex16(divergence.recorded) + ", replayed " +
-         (divergence.fault.empty() ? hex16(divergence.replayed)
-                                   : "nothing, the world does not step: " + divergence.fault);
-}
-
-scenes::Simulation make_simulation(const scenes::Scene& scene, int workers, int lanes) {
-  auto simulation = scenes::Simulation::create(scene);
-  if (!simulation.ok()) {
-    throw Failure(kExitCorrupt, "the scene cannot run: " + error_text(simulation.error()));
-  }
-  if (const solver::Error error = simulation.value().set_workers(workers); !error.ok()) {
-    throw Failure(kExitUsage, "--workers: " + error_text(error));
-  }
-  if (const solver::Error error = simulation.value().set_lanes(lanes); !error.ok()) {
-    throw Failure(kExitUsage, "--lanes: " + error_text(error));
-  }
-  return std::move(simulation.value());
-}
-
-std::string error_text(const solver::Error& error) {
-  return std::string(solver::code_name(error.code)) + " " + error.field;
+const protocol::LogTick& TickReader::at(std::uint64_t tick) {
+  if (cursor_ && cursor_->last_tick() == tick) return cursor_->tick();
+  if (!cursor_ || cursor_->last_tick() > tick) rewind(tick);
+  while (cursor_->last_tick() < tick)
+    if (cursor_->next() == protocol::LogCursor::Step::kEnd)
+      throw Failure(kExitUsage, "there is no tick " + std::to_string(tick));
+  return cursor_->tick();
 }
 
 }  // namespace cycloid::cli

@@ -1,12 +1,11 @@
 #pragma once
 
 #include <cstdint>
-#include <fstream>
-#include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <string>
-#include <string_view>
+#include <vector>
 
 #include "cli/exit_codes.hpp"
 #include "protocol/log_format.hpp"
@@ -14,74 +13,45 @@
 
 namespace cycloid::cli {
 
-/// As many as a world takes by itself.
-inline constexpr int kLanesDefault = 4;
-
-/// A log with the scene that it carries.
+/// A log with the scene that it carries. Its ticks stay bytes: a TickReader reads them.
 struct LoadedLog {
   std::string file;
-  protocol::Log log;
+  protocol::LogSummary log;
+  std::shared_ptr<const std::vector<std::byte>> bytes;  ///< The good prefix.
   scenes::Scene scene;
+  bool salvaged = false;  ///< What is behind the good prefix was given up on purpose.
 
-  /// Whether it ends as a log should, or why not.
+  std::uint64_t first_tick() const { return log.header.branch_tick + 1; }
+  std::uint64_t last_tick() const { return log.last_tick; }
+  /// Whether it ends as a log should, or why not and what is lost.
   std::string blemish() const;
+};
+
+struct LoadOptions {
+  bool salvage = false;  ///< Take the good prefix of a log with damage in its middle.
 };
 
 /// Reads a log of which at least a prefix is good. A Failure (corrupt, incompatible, I/O) names the
 /// file and what is wrong with it.
-LoadedLog load_log(const std::string& file);
+LoadedLog load_log(const std::string& file, const LoadOptions& options = {});
 /// The same of bytes that are in memory; `file` is what a Failure calls them.
-LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes);
+LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes,
+                    const LoadOptions& options = {});
 
-/// Writes a log of a headless run.
-class LogWriter {
+/// The ticks of a log in any order; quick where each is the one after the last.
+class TickReader {
  public:
-  LogWriter(std::string file, const scenes::Scene& scene);
-  void tick(const protocol::LogTick& tick);
-  void finish(const protocol::LogFooter& footer);
+  explicit TickReader(const LoadedLog& loaded);
+  /// @pre first_tick() <= tick <= last_tick(). Valid until the next call.
+  const protocol::LogTick& at(std::uint64_t tick);
 
  private:
-  void write();
+  void rewind(std::uint64_t tick);
 
-  std::string file_;
-  std::ofstream stream_;
-  protocol::Bytes bytes_;
-  std::optional<protocol::LogEncoder> encoder_;
+  std::shared_ptr<const std::vector<std::byte>> bytes_;
+  protocol::LogStart start_;
+  std::vector<protocol::KeyframePlace> keyframes_;
+  std::optional<protocol::LogCursor> cursor_;
 };
-
-/// A tick whose digest is not the recorded one.
-struct Divergence {
-  std::uint64_t tick = 0;
-  std::uint64_t recorded = 0;
-  std::uint64_t replayed = 0;
-  std::string fault;  ///< Where the replay could not make the tick at all.
-};
-
-struct Replayed {
-  std::uint64_t ticks = 0;  ///< Made and found equal.
-  std::uint64_t digest = 0;
-  std::optional<Divergence> divergence;
-};
-
-struct ReplayOptions {
-  std::uint64_t to = 0;  ///< Last tick; 0: all.
-  int workers = 1;
-  int lanes = kLanesDefault;
-  std::function<void(std::uint64_t tick, std::uint64_t digest)> on_tick;
-};
-
-/// Steps the scene by the frames and compares the digest of every tick; stops at the first that
-/// differs.
-Replayed replay(const LoadedLog& loaded, const ReplayOptions& options);
-
-/// "diverged at tick 7: recorded ..., replayed ..."
-std::string divergence_text(const Divergence& divergence);
-
-/// A simulation of the scene, or a Failure that says why there is none.
-scenes::Simulation make_simulation(const scenes::Scene& scene, int workers,
-                                   int lanes = kLanesDefault);
-
-/// What a step that failed means: "kFaulted position".
-std::string error_text(const solver::Error& error);
 
 }  // namespace cycloid::cli

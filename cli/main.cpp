@@ -10,6 +10,7 @@
 #endif
 
 #include "cli/commands.hpp"
+#include "cli/log_file.hpp"
 #include "cli/output.hpp"
 #include "scenes/reasons.hpp"
 #include "solver/floating_point_mode.hpp"
@@ -22,6 +23,11 @@ CLI::App* add_command(CLI::App& app, const std::string& name, const std::string&
   command->add_flag("--json", action.json, "One JSON object on stdout");
   command->footer(kExitCodesText);
   return command;
+}
+
+void add_salvage_option(CLI::App* command, LoadOptions& options) {
+  command->add_flag("--salvage", options.salvage,
+                    "Of a log with damage in its middle take the good ticks before");
 }
 
 void add_lanes_option(CLI::App* command, int& lanes) {
@@ -43,6 +49,9 @@ static Exit parse_and_run(int argc, char** argv) {
   add_run(app, action);
   add_replay(app, action);
   add_verify(app, action);
+  add_info(app, action);
+  add_cut(app, action);
+  add_export(app, action);
   add_golden(app, action);
   add_diff(app, action);
   add_trace(app, action);

@@ -11,8 +11,7 @@ namespace cycloid::cli {
 std::vector<scenes::SeatInput> Match::inputs(std::uint64_t tick, int seats) const {
   std::vector<scenes::SeatInput> inputs;
   if (log) {
-    for (const protocol::SeatFrame& seat :
-         log->log.ticks[static_cast<std::size_t>(tick - 1)].frame.seats)
+    for (const protocol::SeatFrame& seat : reader->at(tick).frame.seats)
       inputs.push_back(seat.input);
     return inputs;
   }
@@ -21,18 +20,27 @@ std::vector<scenes::SeatInput> Match::inputs(std::uint64_t tick, int seats) cons
   return inputs;
 }
 
-/// A file is a log when it says so by its name, or when it reads as one.
-static bool is_log(const std::string& what) {
-  if (what.ends_with(".cylog")) return true;
-  if (!kind_of(what).is_file) return false;
-  return protocol::read_log(read_file(what)).state != protocol::LogState::kCorrupt;
+std::uint64_t Match::recorded_digest(std::uint64_t tick) const {
+  return reader->at(tick).digest;
 }
 
-Match open_match(const std::string& what) {
-  std::optional<LoadedLog> log;
-  if (is_log(what)) log = load_log(what);
-  scenes::Scene scene = log ? log->scene : load_scene(what);
-  return {what, std::move(log), std::move(scene)};
+scenes::Simulation Match::start(const StepSetting& setting) const {
+  return log ? first_state(*log, setting.workers, setting.lanes)
+             : make_simulation(scene, setting.workers, setting.lanes);
+}
+
+/// A file is a log when it says so by its name, or by its first bytes.
+static bool is_log(const std::string& what) {
+  if (what.ends_with(".cylog")) return true;
+  return kind_of(what).is_file && protocol::looks_like_log(read_file(what));
+}
+
+Match open_match(const std::string& what, const LoadOptions& options) {
+  if (!is_log(what)) return {what, {}, load_scene(what), nullptr};
+  LoadedLog log = load_log(what, options);
+  auto reader = std::make_shared<TickReader>(log);
+  scenes::Scene scene = log.scene;
+  return {what, std::move(log), std::move(scene), std::move(reader)};
 }
 
 std::string input_difference(const std::vector<scenes::SeatInput>& a,
@@ -55,18 +63,13 @@ std::string input_difference(const std::vector<scenes::SeatInput>& a,
   return "";
 }
 
-static scenes::Simulation start(const Match& match, const StepSetting& setting) {
-  scenes::Simulation simulation = make_simulation(match.scene, setting.workers);
-  if (const solver::Error error = simulation.set_lanes(setting.lanes); !error.ok())
-    throw Failure(kExitUsage, "--lanes: " + error_text(error));
-  return simulation;
-}
-
 Course run_course(const Match& match, std::uint64_t ticks, const StepSetting& setting) {
-  scenes::Simulation simulation = start(match, setting);
+  scenes::Simulation simulation = match.start(setting);
   Course course;
+  course.begin = match.begin();
+  course.digests.assign(static_cast<std::size_t>(course.begin), 0);
   course.digests.push_back(simulation.digest());
-  for (std::uint64_t tick = 1; tick <= ticks && course.fault.empty(); ++tick) {
+  for (std::uint64_t tick = course.begin + 1; tick <= ticks && course.fault.empty(); ++tick) {
     const solver::Error error = simulation.step(match.inputs(tick, simulation.seats()));
     if (!error.ok()) course.fault = error_text(error);
     course.digests.push_back(simulation.digest());
@@ -80,13 +83,17 @@ TickTrace trace_tick(const Match& match, std::uint64_t tick, const TraceDetail& 
     throw Failure(kExitUsage, "--tick: " + match.name + " has only " +
                                   std::to_string(match.ticks(tick)) + " ticks");
   }
-  scenes::Simulation simulation = start(match, setting);
+  if (tick < match.begin()) {
+    throw Failure(kExitUsage,
+                  "--tick: " + match.name + " begins after tick " + std::to_string(match.begin()));
+  }
+  scenes::Simulation simulation = match.start(setting);
   solver::StepTrace trace;
   trace.wants_objects = detail.objects;
   trace.wants_fields = detail.object;
   TickTrace traced;
-  if (tick == 0) simulation.trace_state(trace);
-  for (std::uint64_t now = 1; now <= tick; ++now) {
+  if (tick == match.begin()) simulation.trace_state(trace);
+  for (std::uint64_t now = match.begin() + 1; now <= tick; ++now) {
     const auto inputs = match.inputs(now, simulation.seats());
     const solver::Error error =
         now == tick ? simulation.step_traced(inputs, trace) : simulation.step(inputs);

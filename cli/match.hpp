@@ -1,11 +1,12 @@
 #pragma once
 
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
-#include "cli/log_file.hpp"
+#include "cli/replaying.hpp"
 #include "solver/trace.hpp"
 
 namespace cycloid::cli {
@@ -23,26 +24,33 @@ struct Match {
   std::optional<LoadedLog> log;
   scenes::Scene scene;
 
-  /// How long it is; a scene by its script has no end.
-  std::uint64_t ticks(std::uint64_t otherwise) const {
-    return log ? log->log.ticks.size() : otherwise;
-  }
-  /// Those of the log's frame, or what the script says for so many seats.
-  /// @pre 1 <= tick <= ticks(tick)
+  /// Ticks made before it begins: those before the first of a log that was cut or branched.
+  std::uint64_t begin() const { return log ? log->first_tick() - 1 : 0; }
+  /// Its last tick; a scene by its script has no end.
+  std::uint64_t ticks(std::uint64_t otherwise) const { return log ? log->last_tick() : otherwise; }
+  /// Those of the log's frame, or what the script says for so many seats. Not for two threads.
+  /// @pre begin() < tick <= ticks(tick)
   std::vector<scenes::SeatInput> inputs(std::uint64_t tick, int seats) const;
+  /// The digest in the log. @pre there is a log, and begin() < tick <= ticks(tick)
+  std::uint64_t recorded_digest(std::uint64_t tick) const;
+  /// The world as it was made, or as the log goes on from.
+  scenes::Simulation start(const StepSetting& setting) const;
+
+  std::shared_ptr<TickReader> reader;  ///< Of the log.
 };
 
 /// A log, a scene file or a catalogue name; a Failure says what is wrong with it.
-Match open_match(const std::string& what);
+Match open_match(const std::string& what, const LoadOptions& options = {});
 
 /// The first difference of two ticks' inputs as "seat 1: axes[0]: 100 (0x0064) against -3
 /// (0xfffd)", or "".
 std::string input_difference(const std::vector<scenes::SeatInput>& a,
                              const std::vector<scenes::SeatInput>& b);
 
-/// A match from tick 0 on: the digest after every tick.
+/// A match from its beginning on: the digest after every tick.
 struct Course {
-  std::vector<std::uint64_t> digests;  ///< By tick; that of the world as it was made is [0].
+  std::uint64_t begin = 0;             ///< As of the match; the digests of ticks before are 0.
+  std::vector<std::uint64_t> digests;  ///< By tick; [begin] is that of the world as it was made.
   std::string fault;  ///< Why the tick of the last digest could not be made, or "".
 };
 
@@ -59,7 +67,7 @@ struct TraceDetail {
   std::string object;  ///< Whose fields, such as "contact 7".
 };
 
-/// Steps as far as `ticks`, or to the tick that cannot be made.
+/// Steps as far as tick `ticks`, or to the tick that cannot be made.
 Course run_course(const Match& match, std::uint64_t ticks, const StepSetting& setting);
 
 /// Steps to `tick` and traces it; tick 0 is the world as it was made. A Failure where the match

@@ -2,35 +2,56 @@
 #include <memory>
 
 #include "cli/commands.hpp"
-#include "cli/log_file.hpp"
 #include "cli/output.hpp"
+#include "cli/replaying.hpp"
 
 namespace cycloid::cli {
 namespace {
 
 struct ReplayCommand {
   std::string log;
+  LoadOptions loading;
   std::uint64_t to = 0;
+  bool from_start = false;
   std::uint64_t digest_every = 0;
   int workers = 1;
   int lanes = kLanesDefault;
 };
 
 /// A log that was not closed is a match that was killed: its ticks are good. One that is torn has
-/// lost something.
+/// lost something, which is well only where that was said to be.
 Exit exit_of(const LoadedLog& loaded, const Replayed& replayed) {
   if (replayed.divergence) return kExitDiverged;
-  return loaded.log.state == protocol::LogState::kTorn ? kExitCorrupt : kExitGood;
+  const bool torn = loaded.log.state == protocol::LogState::kTorn;
+  return torn && !loaded.salvaged ? kExitCorrupt : kExitGood;
+}
+
+void check_bounds(const ReplayCommand& options, const LoadedLog& loaded) {
+  if (options.to > loaded.last_tick()) {
+    throw Failure(kExitUsage, "--to: " + options.log + " has only " +
+                                  std::to_string(loaded.last_tick()) + " ticks");
+  }
+  if (options.to != 0 && options.to + 1 < loaded.first_tick()) {
+    throw Failure(kExitUsage, "--to: " + options.log + " begins after tick " +
+                                  std::to_string(loaded.first_tick() - 1));
+  }
+}
+
+void print_words(const ReplayCommand& options, const LoadedLog& loaded, const Replayed& replayed) {
+  const std::string blemish = loaded.blemish();
+  if (!blemish.empty()) std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
+  if (replayed.divergence) {
+    std::cerr << "cycloid: " << options.log << ": " << divergence_text(*replayed.divergence)
+              << '\n';
+  }
 }
 
 Exit replay_log(const ReplayCommand& options, bool json) {
-  const LoadedLog loaded = load_log(options.log);
-  if (options.to > loaded.log.ticks.size()) {
-    throw Failure(kExitUsage, "--to: " + options.log + " has only " +
-                                  std::to_string(loaded.log.ticks.size()) + " ticks");
-  }
+  const LoadedLog loaded = load_log(options.log, options.loading);
+  check_bounds(options, loaded);
   ReplayOptions replaying;
-  replaying.to = options.to;
+  if (options.to != 0) replaying.to = options.to;
+  replaying.from = options.from_start ? 0 : options.to;
   replaying.workers = options.workers;
   replaying.lanes = options.lanes;
   replaying.on_tick = [&](std::uint64_t tick, std::uint64_t digest) {
@@ -39,21 +60,18 @@ Exit replay_log(const ReplayCommand& options, bool json) {
   };
   const Replayed replayed = replay(loaded, replaying);
   const Exit exit = exit_of(loaded, replayed);
-  const std::string blemish = loaded.blemish();
-  if (!blemish.empty()) std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
-  if (replayed.divergence) {
-    std::cerr << "cycloid: " << options.log << ": " << divergence_text(*replayed.divergence)
-              << '\n';
-  }
+  print_words(options, loaded, replayed);
   if (json) {
-    Json object = {{"log", options.log},      {"scene", loaded.log.header.scene_name},
-                   {"ticks", replayed.ticks}, {"digest", hex16(replayed.digest)},
-                   {"blemish", blemish},      {"diverged_at", nullptr}};
+    Json object = {{"log", options.log},          {"scene", loaded.log.header.scene_name},
+                   {"from", replayed.from},       {"ticks", replayed.ticks},
+                   {"tick", replayed.tick()},     {"digest", hex16(replayed.digest)},
+                   {"blemish", loaded.blemish()}, {"diverged_at", nullptr}};
     if (replayed.divergence) object["diverged_at"] = replayed.divergence->tick;
     print_json(std::move(object), exit);
   } else if (!replayed.divergence) {
-    std::cout << "replayed " << replayed.ticks << " ticks of " << loaded.log.header.scene_name
-              << ", all digests equal, last " << hex16(replayed.digest) << '\n';
+    std::cout << "replayed " << replayed.ticks << " ticks of " << loaded.log.header.scene_name;
+    if (replayed.from != 0) std::cout << " from the state after tick " << replayed.from;
+    std::cout << ", all digests equal, last " << hex16(replayed.digest) << '\n';
   }
   return exit;
 }
@@ -65,7 +83,14 @@ void add_replay(CLI::App& app, Action& action) {
   CLI::App* command = add_command(
       app, "replay", "Step the match in a log and compare the digest of every tick", action);
   command->add_option("LOG", options->log, "A .cylog file")->required();
-  command->add_option("--to", options->to, "Stop after this tick")->check(CLI::PositiveNumber);
+  CLI::Option* to =
+      command
+          ->add_option("--to", options->to,
+                       "Go to this tick, from the last state in the log that is not after it")
+          ->check(CLI::PositiveNumber);
+  command->add_flag("--from-start", options->from_start, "With --to: step every tick before, too")
+      ->needs(to);
+  add_salvage_option(command, options->loading);
   command->add_option("--digest-every", options->digest_every, "Also print 'tick digest' so often");
   command->add_option("--workers", options->workers, "Threads; changes no bit")
       ->capture_default_str()

@@ -21,6 +21,8 @@ const char* exit_name(Exit exit) {
       return "incompatible";
     case kExitIo:
       return "input/output";
+    case kExitTimeout:
+      return "timeout";
   }
   return "unknown";
 }
@@ -126,7 +128,9 @@ void publish_files(const Report& report, const ReportOptions& options, bool json
 
 Exit Report::worst() const {
   Exit worst = kExitGood;
-  for (const Verdict& verdict : verdicts) worst = std::max(worst, verdict.exit);
+  const auto rank = [](Exit exit) { return exit == kExitTimeout ? 0 : static_cast<int>(exit); };
+  for (const Verdict& verdict : verdicts)
+    if (rank(verdict.exit) > rank(worst) || worst == kExitGood) worst = verdict.exit;
   return worst;
 }
 

@@ -5,8 +5,9 @@
 #include <vector>
 
 #include "cli/commands.hpp"
-#include "cli/log_file.hpp"
 #include "cli/output.hpp"
+#include "cli/replaying.hpp"
+#include "cli/run_log.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -18,6 +19,7 @@ struct RunOptions {
   int workers = 1;
   int lanes = kLanesDefault;
   std::string log;
+  std::uint64_t keyframe_every = 600;
   std::string poses;
 };
 
@@ -60,8 +62,8 @@ class PoseTable {
 Exit run_scene(const RunOptions& options, bool json) {
   const scenes::Scene scene = load_scene(options.scene);
   scenes::Simulation simulation = make_simulation(scene, options.workers, options.lanes);
-  std::optional<LogWriter> log;
-  if (!options.log.empty()) log.emplace(options.log, scene);
+  std::optional<RunLog> log;
+  if (!options.log.empty()) log.emplace(options.log, scene, options.keyframe_every);
 
   std::optional<PoseTable> poses;
   if (!options.poses.empty()) poses.emplace(options.poses).add(simulation);
@@ -76,7 +78,7 @@ Exit run_scene(const RunOptions& options, bool json) {
       throw Failure(kExitDiverged, options.scene + ": the world does not step to tick " +
                                        std::to_string(tick) + ": " + error_text(error));
     }
-    if (log) log->tick({frame, simulation.digest()});
+    if (log) log->tick(frame, simulation);
     if (poses) poses->add(simulation);
     const bool wanted = options.digest_every != 0 && tick % options.digest_every == 0;
     if (!wanted && tick != options.ticks) continue;
@@ -84,7 +86,7 @@ Exit run_scene(const RunOptions& options, bool json) {
     if (json) digests.push_back({{"tick", tick}, {"digest", digest}});
     if (!json) std::cout << tick << ' ' << digest << '\n';
   }
-  if (log) log->finish({options.ticks, simulation.digest()});
+  if (log) log->finish(simulation);
   if (poses) poses->finish();
   if (json) {
     print_json({{"scene", scene.name},
@@ -115,6 +117,10 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::Range(1, 64));
   add_lanes_option(command, options->lanes);
   command->add_option("--log", options->log, "Write a log of the run to this file");
+  command
+      ->add_option("--keyframe-every", options->keyframe_every,
+                   "Ticks between two exact states in the log; 0: none")
+      ->capture_default_str();
   command->add_option("--poses", options->poses, "Write every body's pose at every tick as CSV");
   command->callback([options, &action] {
     action.run = [=, &action] { return run_scene(*options, action.json); };

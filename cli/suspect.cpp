@@ -25,7 +25,7 @@ class SuspectHere : public Suspect {
   const Match& match_;
 };
 
-/// "12 0123456789abcdef" lines, tick after tick from 0 on.
+/// "12 0123456789abcdef" lines, tick after tick.
 std::optional<Course> course_from_lines(const std::string& lines) {
   Course course;
   std::istringstream stream(lines);
@@ -34,6 +34,7 @@ std::optional<Course> course_from_lines(const std::string& lines) {
   while (stream >> tick >> text) {
     std::uint64_t digest = 0;
     const char* end = text.data() + text.size();
+    if (course.digests.empty()) course.digests.resize(static_cast<std::size_t>(tick));
     const bool read = std::from_chars(text.data(), end, digest, 16).ptr == end;
     if (!read || tick != course.digests.size()) return std::nullopt;
     course.digests.push_back(digest);

@@ -16,15 +16,17 @@ struct TraceCommand {
   TraceDetail detail;
   std::string phase;
   StepSetting setting;
+  LoadOptions loading;
 };
 
 Exit print_course(const TraceCommand& options, bool json) {
-  const Match match = open_match(options.match);
-  const std::uint64_t ticks = std::min(match.ticks(options.ticks), options.ticks);
+  const Match match = open_match(options.match, options.loading);
+  const std::uint64_t wanted = match.begin() + options.ticks;
+  const std::uint64_t ticks = std::min(match.ticks(wanted), wanted);
   const Course course = run_course(match, ticks, options.setting);
   const Exit exit = course.fault.empty() ? kExitGood : kExitDiverged;
   Json digests = Json::array();
-  for (std::size_t tick = 0; tick < course.digests.size(); ++tick) {
+  for (std::size_t tick = course.begin; tick < course.digests.size(); ++tick) {
     const std::string digest = hex16(course.digests[tick]);
     if (json) digests.push_back({{"tick", tick}, {"digest", digest}});
     if (!json) std::cout << tick << ' ' << digest << '\n';
@@ -46,7 +48,7 @@ void print_phase(const solver::TracedPhase& phase) {
 }
 
 Exit print_tick(const TraceCommand& options, bool json) {
-  const Match match = open_match(options.match);
+  const Match match = open_match(options.match, options.loading);
   TickTrace trace = trace_tick(match, options.tick, options.detail, options.setting);
   if (!options.phase.empty()) {
     const std::optional<solver::Phase> wanted = phase_of(options.phase);
@@ -83,6 +85,7 @@ void add_trace(CLI::App& app, Action& action) {
       ->required();
   CLI::Option* tick =
       command->add_option("--tick", options->tick, "The tick to look into; 0: the start");
+  add_salvage_option(command, options->loading);
   command->add_option("--ticks", options->ticks, "Without --tick: how far")->capture_default_str();
   command->add_flag("--objects", options->detail.objects, "Also the digest of every object")
       ->needs(tick);

@@ -1,12 +1,15 @@
 #include <algorithm>
 #include <chrono>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/files.hpp"
-#include "cli/log_file.hpp"
+#include "cli/output.hpp"
+#include "cli/replaying.hpp"
 #include "cli/report.hpp"
+#include "cli/shard.hpp"
 #include "cli/side_by_side.hpp"
 
 namespace cycloid::cli {
@@ -15,6 +18,9 @@ namespace {
 struct VerifyOptions {
   std::vector<std::string> paths;
   bool allow_open = false;
+  LoadOptions loading;
+  std::string shard;
+  double timeout_s = 0.0;
   int workers = 1;
   int lanes = kLanesDefault;
   int jobs = 1;
@@ -36,39 +42,89 @@ std::vector<std::string> logs_of(const std::vector<std::string>& paths) {
   return files;
 }
 
-Verdict verify_log(const std::string& file, const VerifyOptions& options) {
+/// Those of the files that are for this job. Bytes decide, not names, so every job has to read all:
+/// a small part of what replaying them takes.
+std::vector<std::string> part_of(const std::vector<std::string>& files, const std::string& shard) {
+  if (shard.empty()) return files;
+  const Shard part = shard_of(shard, system_environment());
+  std::vector<std::string> mine;
+  for (const std::string& file : files) {
+    bool is_mine = part.number == 1;  // What cannot be read is for one to complain about.
+    try {
+      is_mine = part.holds(read_file(file));
+    } catch (const Failure&) {
+    }
+    if (is_mine) mine.push_back(file);
+  }
+  return mine;
+}
+
+/// What a log that was replayed without a difference is, by its end.
+void judge_end(const LoadedLog& loaded, bool allow_open, Verdict& verdict) {
+  const std::string blemish = loaded.blemish();
+  if (blemish.empty()) return;
+  const bool open = loaded.log.state == protocol::LogState::kOpen;
+  verdict.exit = (open && allow_open) || loaded.salvaged ? kExitGood : kExitCorrupt;
+  verdict.text = blemish;
+}
+
+using Deadline = std::optional<std::chrono::steady_clock::time_point>;
+
+void verify_log(const std::string& file, const VerifyOptions& options, const Deadline& deadline,
+                Verdict& verdict) {
+  const LoadedLog loaded = load_log(file, options.loading);
+  ReplayOptions replaying;
+  replaying.workers = options.workers;
+  replaying.lanes = options.lanes;
+  replaying.deadline = deadline;
+  const Replayed replayed = replay(loaded, replaying);
+  verdict.ticks = replayed.ticks;
+  if (replayed.divergence) {
+    verdict.exit = kExitDiverged;
+    verdict.text = divergence_text(*replayed.divergence);
+  } else if (replayed.timed_out) {
+    verdict.exit = kExitTimeout;
+    verdict.text = "out of time at tick " + std::to_string(replayed.tick()) + " of " +
+                   std::to_string(loaded.last_tick());
+  } else {
+    judge_end(loaded, options.allow_open, verdict);
+  }
+}
+
+Verdict verdict_on(const std::string& file, const VerifyOptions& options,
+                   const Deadline& deadline) {
+  using Clock = std::chrono::steady_clock;
   Verdict verdict;
   verdict.name = file;
-  const auto start = std::chrono::steady_clock::now();
+  const auto start = Clock::now();
   try {
-    const LoadedLog loaded = load_log(file);
-    ReplayOptions replaying;
-    replaying.workers = options.workers;
-    replaying.lanes = options.lanes;
-    const Replayed replayed = replay(loaded, replaying);
-    const bool open = loaded.log.state == protocol::LogState::kOpen;
-    verdict.ticks = replayed.ticks;
-    if (replayed.divergence) {
-      verdict.exit = kExitDiverged;
-      verdict.text = divergence_text(*replayed.divergence);
-    } else if (const std::string blemish = loaded.blemish(); !blemish.empty()) {
-      verdict.exit = open && options.allow_open ? kExitGood : kExitCorrupt;
-      verdict.text = blemish;
+    if (deadline && start >= *deadline) {
+      verdict.exit = kExitTimeout;
+      verdict.text = "out of time before it was begun";
+    } else {
+      verify_log(file, options, deadline, verdict);
     }
   } catch (const Failure& failure) {  // One bad log must not hide the verdict on the others.
     verdict.exit = failure.exit;
     verdict.text = failure.what();
     if (verdict.text.starts_with(file + ": ")) verdict.text.erase(0, file.size() + 2);
   }
-  verdict.seconds = std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+  verdict.seconds = std::chrono::duration<double>(Clock::now() - start).count();
   return verdict;
 }
 
 Exit verify_logs(const VerifyOptions& options, bool json) {
-  const std::vector<std::string> files = logs_of(options.paths);
+  using Clock = std::chrono::steady_clock;
+  const std::vector<std::string> files = part_of(logs_of(options.paths), options.shard);
+  Deadline deadline;
+  if (options.timeout_s > 0.0) {
+    deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                  std::chrono::duration<double>(options.timeout_s));
+  }
   Report report{"cycloid verify", "log", std::vector<Verdict>(files.size())};
-  side_by_side(files.size(), options.jobs,
-               [&](std::size_t i) { report.verdicts[i] = verify_log(files[i], options); });
+  side_by_side(files.size(), options.jobs, [&](std::size_t i) {
+    report.verdicts[i] = verdict_on(files[i], options, deadline);
+  });
   return publish(report, options.report, json);
 }
 
@@ -82,6 +138,12 @@ void add_verify(CLI::App& app, Action& action) {
   command->add_option("LOG", options->paths, "Logs, or folders to search for *.cylog")->required();
   command->add_flag("--allow-open", options->allow_open,
                     "A log without its end, such as of a killed server, is good");
+  add_salvage_option(command, options->loading);
+  command->add_option("--shard", options->shard,
+                      "Only part I of N of the logs, by their bytes: 'I/N', or 'auto' from the "
+                      "variables of a Kubernetes Job, a Slurm array or GNU parallel");
+  command->add_option("--timeout", options->timeout_s, "Seconds for all; then exit 124")
+      ->check(CLI::PositiveNumber);
   command->add_option("--workers", options->workers, "Threads; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));

@@ -6,6 +6,8 @@
 #include "protocol/crc32c.hpp"
 #include "protocol/little_endian.hpp"
 #include "protocol/utf8.hpp"
+#include "scenes/catalogue.hpp"
+#include "scenes/scene.hpp"
 
 namespace cycloid::protocol {
 namespace {
@@ -64,6 +66,14 @@ std::string incompatibility(const LogHeader& header, std::span<const std::uint32
 }
 
 }  // namespace
+
+LogHeader log_header_of(const scenes::Scene& scene) {
+  LogHeader header;
+  header.scene_digest = scenes::scene_digest(scene);
+  header.scene_name = scene.name;
+  header.scene = scenes::to_binary(scene);
+  return header;
+}
 
 bool looks_like_log(std::span<const std::byte> bytes) {
   const auto* magic = reinterpret_cast<const std::byte*>(kMagic.data());

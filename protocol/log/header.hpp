@@ -8,7 +8,14 @@
 #include "protocol/codec.hpp"
 #include "protocol/log/values.hpp"
 
+namespace cycloid::scenes {
+struct Scene;
+}
+
 namespace cycloid::protocol {
+
+/// A header with the scene, its digest and its name; who writes the log fills in the rest.
+LogHeader log_header_of(const scenes::Scene& scene);
 
 /// Whether the bytes begin as those of a log do, of whatever format.
 bool looks_like_log(std::span<const std::byte> bytes);

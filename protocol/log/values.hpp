@@ -55,7 +55,7 @@ struct KeyframePlace {
 struct LogFooter {
   std::uint64_t ticks = 0;  ///< The last tick.
   std::uint64_t digest = 0;
-  std::vector<KeyframePlace> keyframes;  ///< Filled in by the encoder.
+  std::vector<KeyframePlace> keyframes = {};  ///< Filled in by the encoder.
 };
 
 enum class LogState : std::uint8_t {

@@ -44,7 +44,7 @@ static std::vector<protocol::LogTick> pressed_ticks() {
 }
 
 static const hostile::Match& good_match() {
-  static const hostile::Match kMatch = hostile::played("vehicle", 3);
+  static const hostile::Match kMatch = hostile::played("vehicle", 3, 2);
   return kMatch;
 }
 
@@ -54,15 +54,34 @@ void run_log(Input input) {
   Seed bytes(input.begin(), input.end());
   if (mode % 2 == kEditMode) {
     bytes = edited(match.log, input);
-    if (mode % 4 == 3 && bytes.size() == match.log.size()) hostile::refit_checks(match.ends, bytes);
+    if (mode % 4 == 3 && bytes.size() == match.log.size())
+      hostile::refit_checks(match.checks, bytes);
   }
-  const protocol::Log log = protocol::read_log(bytes);
-  if (log.good_bytes > bytes.size()) fail("more good bytes than there are");
-  if (log.state == protocol::LogState::kCorrupt && log.good_bytes == 0) return;
+  const protocol::LogSummary log = protocol::scan_log(bytes);
+  if (log.good_bytes + log.lost_bytes != bytes.size()) fail("bytes neither good nor lost");
+  if (log.good_bytes == 0) return;
+  // What is good is good again without the rest, and a reader can begin at every keyframe of it.
+  const std::span<const std::byte> good(bytes.data(), static_cast<std::size_t>(log.good_bytes));
+  const protocol::LogSummary again = protocol::scan_log(good);
+  if (again.last_tick != log.last_tick || again.good_bytes != log.good_bytes)
+    fail("a good prefix is another one by itself");
+  for (const protocol::KeyframePlace& place : log.keyframes)
+    if (protocol::LogCursor(good, log.start, place).next() != protocol::LogCursor::Step::kKeyframe)
+      fail("a keyframe is not where it was found");
   const scenes::Loaded loaded = scenes::from_binary(log.header.scene);
   if (!loaded.scene) return;
   (void)scenes::scene_digest(*loaded.scene);
-  play(*loaded.scene, std::span(log.ticks).first(std::min<std::size_t>(log.ticks.size(), 5)));
+  std::vector<protocol::LogTick> ticks;
+  protocol::LogCursor cursor(good, log.start);
+  while (ticks.size() < 5) {
+    const protocol::LogCursor::Step step = cursor.next();
+    if (step == protocol::LogCursor::Step::kEnd) break;
+    if (step == protocol::LogCursor::Step::kTick) ticks.push_back(cursor.tick());
+    if (step != protocol::LogCursor::Step::kKeyframe || !is_cheap(*loaded.scene)) continue;
+    auto made = scenes::Simulation::create(*loaded.scene);
+    if (made.ok() && made.value().decode(cursor.keyframe().state).ok()) (void)made.value().digest();
+  }
+  play(*loaded.scene, ticks);
 }
 
 std::vector<Seed> log_seeds() {

@@ -26,14 +26,14 @@ void expect_within(const Bound& bound, std::size_t bytes, const std::string& wha
   EXPECT_GT(used.total_bytes, 0u) << what;
 }
 
-constexpr Bound kOfLogs{16, 4096};
+constexpr Bound kOfLogs{16, 65536};
 constexpr Bound kOfSnapshots{8, 4096};
 constexpr Bound kOfBinaryScenes{512, 1u << 20};
 constexpr Bound kOfTextScenes{512, 1u << 20};
 
 TEST(AllocationBounds, OfALog) {
   const Match match = played("vehicle", 50);
-  expect_within(kOfLogs, match.log.size(), "a log", [&] { (void)protocol::read_log(match.log); });
+  expect_within(kOfLogs, match.log.size(), "a log", [&] { (void)protocol::scan_log(match.log); });
   // The most ticks in the fewest bytes: no seats.
   protocol::Bytes empty;
   protocol::LogEncoder encoder({}, empty);
@@ -43,7 +43,7 @@ TEST(AllocationBounds, OfALog) {
     encoder.tick(record, empty);
   }
   expect_within(kOfLogs, empty.size(), "a log without seats",
-                [&] { (void)protocol::read_log(empty); });
+                [&] { (void)protocol::scan_log(empty); });
   protocol::Bytes events;
   protocol::LogEncoder other({}, events);
   for (std::uint64_t tick = 1; tick <= 100; ++tick) {
@@ -54,7 +54,34 @@ TEST(AllocationBounds, OfALog) {
     other.tick(record, events);
   }
   expect_within(kOfLogs, events.size(), "a log of events",
-                [&] { (void)protocol::read_log(events); });
+                [&] { (void)protocol::scan_log(events); });
+}
+
+/// A few bytes a tick that stand for 256 seats, a long state, the most keyframes in the fewest
+/// bytes, and damage that has to be searched.
+TEST(AllocationBounds, OfALogThatStandsForMuch) {
+  protocol::Bytes seats;
+  protocol::LogEncoder encoder({}, seats);
+  for (std::uint64_t tick = 1; tick <= 5000; ++tick) {
+    protocol::LogTick record;
+    record.frame.tick = tick;
+    record.frame.seats.resize(256);
+    encoder.tick(record, seats);
+  }
+  expect_within(kOfLogs, seats.size(), "a log of 256 seats",
+                [&] { (void)protocol::scan_log(seats); });
+  protocol::Bytes states;
+  protocol::LogEncoder other({}, states);
+  other.first_keyframe({0, 0, {}, protocol::Bytes(1 << 20)}, states);
+  for (int i = 0; i < 10000; ++i) other.first_keyframe({0, 0, {}, {}}, states);
+  expect_within(kOfLogs, states.size(), "a log of states",
+                [&] { (void)protocol::scan_log(states); });
+  for (const std::size_t cut : {100, 40000}) {
+    protocol::Bytes damaged(seats.begin(), seats.begin() + static_cast<std::ptrdiff_t>(cut));
+    damaged.resize(cut + 100000, std::byte{0x41});
+    expect_within(kOfLogs, damaged.size(), "a damaged log",
+                  [&] { (void)protocol::scan_log(damaged); });
+  }
 }
 
 template <int D>

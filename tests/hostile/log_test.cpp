@@ -2,8 +2,8 @@
 
 #include <map>
 
-#include "cli/log_file.hpp"
 #include "cli/output.hpp"
+#include "cli/replaying.hpp"
 #include "tests/hostile/matches.hpp"
 
 namespace cycloid::hostile {
@@ -27,7 +27,7 @@ Finding verified(std::span<const std::byte> bytes) {
     const cli::Replayed replayed = cli::replay(loaded, options);
     finding.verdict = replayed.divergence ? "diverged" : loaded.blemish().empty() ? "good" : "cut";
     if (finding.verdict == "good") {
-      EXPECT_EQ(finding.digests.size(), loaded.log.ticks.size());
+      EXPECT_EQ(finding.digests.size(), loaded.log.tick_count());
     }
   } catch (const cli::Failure& failure) {
     finding.why = failure.what();
@@ -58,6 +58,38 @@ class HostileLog : public testing::Test {
   }
 };
 
+/// The state of a keyframe is made whatever it is, with checks that fit: it is not a state, not
+/// that of its tick, or it diverges from the replay.
+TEST(HostileKeyframe, FlipsWithChecksRemadeAreNeverGood) {
+  const Match match = played("vehicle", 4, 2);
+  ASSERT_EQ(match.ends.size(), 7u);
+  std::map<std::string, int> found;
+  for (std::size_t byte = match.ends[2]; byte < match.ends[3]; ++byte) {
+    protocol::Bytes damaged = match.log;
+    flip(byte * 8 + byte % 8, damaged);
+    refit_checks(match.checks, damaged);
+    if (damaged == match.log) continue;  // It was the check itself.
+    const Finding finding = verified(damaged);
+    ++found[finding.verdict];
+    ASSERT_NE(finding.verdict, "good") << byte;
+    const protocol::LogSummary log = protocol::scan_log(damaged);
+    if (log.state != protocol::LogState::kComplete) continue;
+    // And where a reader begins with it, it is refused, or diverges, or has the digest it says.
+    try {
+      cli::ReplayOptions from_it;
+      from_it.from = 2;
+      const cli::LoadedLog loaded = cli::parse_log("log", damaged);
+      const cli::Replayed replayed = cli::replay(loaded, from_it);
+      if (!replayed.divergence) {
+        EXPECT_EQ(replayed.digest, match.digests.back());
+      }
+    } catch (const cli::Failure& failure) {
+      EXPECT_EQ(failure.exit, cli::kExitCorrupt);
+    }
+  }
+  print(found);
+}
+
 TEST_F(HostileLog, AsItIsItIsGood) {
   const Finding finding = verified(bytes);
   EXPECT_EQ(finding.verdict, "good") << finding.why;
@@ -83,9 +115,11 @@ TEST_F(HostileLog, CutAtEveryByteItIsAPrefixOrCorrupt) {
     const bool whole_header = size >= match.ends[0];
     ASSERT_EQ(finding.verdict, whole_header ? "cut" : "corrupt") << size;
     ASSERT_TRUE(is_prefix(finding.digests)) << size;
-    const auto whole = [&](std::size_t end) { return end <= size; };
-    const auto records = std::count_if(match.ends.begin() + 1, match.ends.end() - 1, whole);
-    ASSERT_EQ(finding.digests.size(), whole_header ? static_cast<std::size_t>(records) : 0u);
+    const auto next = std::upper_bound(match.ends.begin(), match.ends.end(), size);
+    ASSERT_EQ(finding.digests.size(),
+              whole_header
+                  ? match.ticks_until[static_cast<std::size_t>(next - match.ends.begin() - 1)]
+                  : 0u);
   }
 }
 
@@ -95,7 +129,7 @@ TEST_F(HostileLog, FlipsOfRecordsWithChecksRemadeAreRefusedDivergeOrChangeNothin
   for (std::size_t bit = match.ends[0] * 8; bit < bytes.size() * 8; ++bit) {
     protocol::Bytes damaged = bytes;
     flip(bit, damaged);
-    refit_checks(match.ends, damaged);
+    refit_checks(match.checks, damaged);
     const Finding finding = verified(damaged);
     ASSERT_TRUE(is_prefix(finding.digests)) << "bit " << bit;
     if (finding.verdict == "good") {
@@ -114,14 +148,14 @@ TEST_F(HostileLog, FlipsOfTheHeaderWithChecksRemadeAreRefusedDivergeOrAreAMatch)
   for (std::size_t bit = 0; bit < match.ends[0] * 8; ++bit) {
     protocol::Bytes damaged = bytes;
     flip(bit, damaged);
-    refit_checks(match.ends, damaged);
+    refit_checks(match.checks, damaged);
     Finding finding = verified(damaged);
     const protocol::Log log = protocol::read_log(damaged);
     const scenes::Loaded scene = scenes::from_binary(log.header.scene);
     if (finding.verdict == "incompatible" && scene.scene && bit / 8 > kSaltPlace) {
       ++counts["digest remade"];
       solver::store_little(scenes::scene_digest(*scene.scene), damaged.data() + kSceneDigestPlace);
-      refit_checks(match.ends, damaged);
+      refit_checks(match.checks, damaged);
       finding = verified(damaged);
     }
     if (finding.verdict == "good") {

@@ -1,0 +1,28 @@
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <algorithm>
+
+#include "protocol/log_format.hpp"
+#include "tests/cli/program.hpp"
+
+namespace cycloid::cli {
+namespace {
+
+/// Logs of released versions: each verifies here as long as the version that wrote it is one of
+/// the bit-compatible ones, and none lies here that is not.
+TEST(LogCorpus, EveryLogStillVerifies) {
+  const std::string folder = CYCLOID_SOURCE_DIR "/tests/determinism/logs";
+  const Ran ran = run_program({"verify", folder, "--json"});
+  ASSERT_EQ(ran.exit, 0) << ran.out << ran.err;
+  ASSERT_GE(ran.json()["logs"].size(), 3u);
+  for (const auto& log : ran.json()["logs"]) {
+    const Ran info = run_program({"info", log["log"].get<std::string>(), "--json"});
+    const auto version = info.json()["solver_version"].get<std::uint32_t>();
+    EXPECT_EQ(std::ranges::count(protocol::kBitCompatibleSolverVersions, version), 1) << info.out;
+    EXPECT_GT(info.json()["keyframes"].size(), 0u) << "a state of that version, too";
+  }
+}
+
+}  // namespace
+}  // namespace cycloid::cli
