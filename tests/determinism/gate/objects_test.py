@@ -103,6 +103,16 @@ class Objects(Planted):
     def test_x87_is_found(self) -> None:
         self.expect(self.compile("long double f(long double a) { return a + a; }"), 1, "x87")
 
+    def test_only_the_exact_conversion_of_json_is_let_through(self) -> None:
+        def listing(member: str, text: str) -> str:
+            return f"{member}:     file format elf32-i386\n00000000 <f>:\n  88:\t{text}\n"
+
+        for member, text, findings in (("json_reader.cpp.o", "fadds  0x0(%edi)", 0),
+                                       ("json_reader.cpp.o", "fmuls  0x0(%edi)", 1),
+                                       ("step.cpp.o", "fadds  0x0(%edi)", 1)):
+            found, count = objects.forbidden_instructions(listing(member, text))
+            self.assertEqual((len(found), count), (findings, 1), member + " " + text)
+
     def test_imports_outside_the_list_are_found(self) -> None:
         for name, text in {
             "sinf": '#include <cmath>\nfloat f(float a) { return std::sin(a); }',
