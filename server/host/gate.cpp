@@ -34,9 +34,10 @@ Verdict HelloGate::hear(NewcomerId id, std::span<const std::byte> bytes) {
   if (!payload) {
     if (!newcomer.framer.broken()) return verdict;
     const std::uint32_t announced = newcomer.framer.announced_bytes();
-    verdict = refusal(announced == 0 ? protocol::Refusal::kBadMessage : protocol::Refusal::kTooLarge,
-                      "a message of " + std::to_string(announced) + " bytes, of 1 to " +
-                          std::to_string(protocol::kHelloBytesMax));
+    verdict =
+        refusal(announced == 0 ? protocol::Refusal::kBadMessage : protocol::Refusal::kTooLarge,
+                "a message of " + std::to_string(announced) + " bytes, of 1 to " +
+                    std::to_string(protocol::kHelloBytesMax));
     newcomers_.erase(found);
     return verdict;
   }
@@ -61,11 +62,11 @@ Verdict HelloGate::hear(NewcomerId id, std::span<const std::byte> bytes) {
 std::vector<std::pair<NewcomerId, protocol::Refused>> HelloGate::overdue(std::int64_t now_ns) {
   std::vector<std::pair<NewcomerId, protocol::Refused>> late;
   while (!newcomers_.empty() && newcomers_.begin()->second.deadline_ns <= now_ns) {
-    late.emplace_back(newcomers_.begin()->first,
-                      protocol::Refused{protocol::Refusal::kTooSlow,
-                                        "no hello within " +
-                                            std::to_string(limits_.deadline_ns / 1'000'000) +
-                                            " ms"});
+    late.emplace_back(
+        newcomers_.begin()->first,
+        protocol::Refused{
+            protocol::Refusal::kTooSlow,
+            "no hello within " + std::to_string(limits_.deadline_ns / 1'000'000) + " ms"});
     newcomers_.erase(newcomers_.begin());
   }
   return late;

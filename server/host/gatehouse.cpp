@@ -37,9 +37,9 @@ void Gatehouse::receive(asio::ip::tcp::socket socket) {
       nullptr, [meters = meters_](void*) { meters->connections.add(~std::uint64_t{0}); });
   if (closed_) return see_off(caller, *closed_);
   if (open >= options_.connections_max) {
-    return see_off(caller, {protocol::Refusal::kRoomFull,
-                            std::to_string(open) + " connections, of at most " +
-                                std::to_string(options_.connections_max)});
+    return see_off(
+        caller, {protocol::Refusal::kRoomFull, std::to_string(open) + " connections, of at most " +
+                                                   std::to_string(options_.connections_max)});
   }
   const NewcomerId id = ++last_id_;
   Verdict verdict = gate_.arrive(id, peer.address().to_string(), process_now_ns());

@@ -36,8 +36,7 @@ scenes::Simulation make_simulation(const RoomSettings& settings) {
 
 std::uint32_t rate_of(const RoomSettings& settings, const scenes::Simulation& simulation) {
   if (settings.tick_rate_millihertz != 0) return settings.tick_rate_millihertz;
-  return static_cast<std::uint32_t>(
-      std::lround(1000.0 / static_cast<double>(simulation.tick_s())));
+  return static_cast<std::uint32_t>(std::lround(1000.0 / static_cast<double>(simulation.tick_s())));
 }
 
 spdlog::level::level_enum level_of(Notice::Kind kind) {
@@ -193,8 +192,7 @@ void HostedRoom::wake_sessions() {
 
 void HostedRoom::enter(Entrant entrant) {
   auto shared = std::make_shared<Entrant>(std::move(entrant));
-  asio::post(strand_,
-             [self = shared_from_this(), shared] { self->admit(std::move(*shared)); });
+  asio::post(strand_, [self = shared_from_this(), shared] { self->admit(std::move(*shared)); });
 }
 
 void HostedRoom::admit(Entrant entrant) {

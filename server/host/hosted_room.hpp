@@ -11,6 +11,7 @@
 #include <string>
 #include <vector>
 
+#include "server/host/act_result.hpp"
 #include "server/host/life_cycle.hpp"
 #include "server/host/room_clock.hpp"
 #include "server/host/room_log.hpp"
@@ -20,14 +21,6 @@
 #include "server/operation/meters.hpp"
 
 namespace cycloid::server {
-
-/// What an act on a room, or on the host, came to. The codes are those of HTTP.
-struct ActResult {
-  int status = 200;
-  std::string text;  ///< Why not, where status is 400 or more.
-
-  bool ok() const { return status < 400; }
-};
 
 /// What hosted rooms need of their host, which outlives them.
 struct RoomSite {
@@ -62,7 +55,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   void enter(Entrant entrant);
 
   using Done = std::function<void(ActResult)>;
-  /// `done` is called on the strand; it may be empty. kDrain and kEnd tell the clients `reason`.
+  /// `done` is called on some thread; it may be empty. kDrain and kEnd tell the clients `reason`.
   void act(LifeAct act, std::string reason, std::chrono::milliseconds deadline, Done done);
   /// Takes the seat from whoever holds it.
   void kick(std::uint16_t seat, std::string reason, Done done);
@@ -70,6 +63,8 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   void write_snapshot(std::string path, Done done);
   /// The match goes on from an earlier tick.
   void rewind(std::uint64_t tick, Done done);
+  /// Ends the log's file as it is and goes on in a new one.
+  void rotate_log(Done done);
   void set_limits(const Limits& limits);
   /// Ends at once, and gives nobody time to read the last word.
   void hurry(std::string reason);
@@ -96,6 +91,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   void wake_sessions();
   void publish();
   void publish_stage();
+  void ask(Done done, std::function<ActResult(Room&)> question);
   void take_notice(const Notice& notice);
   void admit(Entrant entrant);
   ServeReport report() const;

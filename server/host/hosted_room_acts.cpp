@@ -1,7 +1,14 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
 #include <utility>
 
 #include "server/host/hosted_room.hpp"
 #include "server/host/process_time.hpp"
+#include "server/host/room_calls.hpp"
 
 // What others ask of a room: each act runs on the room's strand.
 
@@ -9,9 +16,33 @@ namespace cycloid::server {
 namespace {
 
 constexpr int kConflict = 409;
+constexpr int kCannotWrite = 500;
+constexpr int kNotHere = 501;
 
 void answer(const HostedRoom::Done& done, ActResult result) {
   if (done) done(std::move(result));
+}
+
+/// Whole and on the disk, or not there.
+ActResult write_new_file(const std::string& path, const std::vector<std::byte>& bytes) {
+  const auto failed = [&](const char* what, int status) {
+    return ActResult{status,
+                     "file: " + path + ": " + what + ": " + std::generic_category().message(errno)};
+  };
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (file < 0) return failed("cannot be made", errno == EEXIST ? kConflict : kCannotWrite);
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count = ::write(file, bytes.data() + done, bytes.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  ActResult result;
+  if (done < bytes.size() || ::fsync(file) != 0) result = failed("cannot be written", kCannotWrite);
+  (void)::close(file);
+  if (!result.ok()) (void)::unlink(path.c_str());
+  return result;
 }
 
 }  // namespace
@@ -51,14 +82,61 @@ void HostedRoom::say_draining(std::int64_t now_ns) {
   protocol::RoomNotice notice;
   notice.kind = protocol::NoticeKind::kDraining;
   notice.tick = room_->tick();
-  notice.value = static_cast<std::uint64_t>(std::max<std::int64_t>(drain_at_ns_ - now_ns, 0)) /
-                 1'000'000;
+  notice.value =
+      static_cast<std::uint64_t>(std::max<std::int64_t>(drain_at_ns_ - now_ns, 0)) / 1'000'000;
   notice.text = drain_reason_;
-  const auto message = std::make_shared<const protocol::Bytes>(
-      protocol::encode(protocol::ServerMessage(notice)));
+  const auto message =
+      std::make_shared<const protocol::Bytes>(protocol::encode(protocol::ServerMessage(notice)));
   for (const auto& weak : sessions_) {
     if (const auto session = weak.lock()) session->say(message);
   }
+}
+
+void HostedRoom::ask(Done done, std::function<ActResult(Room&)> question) {
+  auto work = [self = shared_from_this(), done = std::move(done), question = std::move(question)] {
+    if (!self->room_ || self->life_.stage() == LifeStage::kEnded) {
+      return answer(done, {kConflict, "the room has ended"});
+    }
+    ActResult result = question(*self->room_);
+    self->wake_sessions();
+    answer(done, std::move(result));
+  };
+  asio::post(strand_, std::move(work));
+}
+
+void HostedRoom::kick(std::uint16_t seat, std::string reason, Done done) {
+  ask(std::move(done),
+      [seat, reason = std::move(reason)](Room& room) { return kick_seat(room, seat, reason); });
+}
+
+void HostedRoom::rewind(std::uint64_t tick, Done done) {
+  ask(std::move(done), [tick](Room& room) { return rewind_room(room, tick); });
+}
+
+void HostedRoom::rotate_log(Done done) {
+  ask(std::move(done), [](Room& room) { return rotate_room_log(room); });
+}
+
+void HostedRoom::set_limits(const Limits& limits) {
+  ask({}, [limits](Room& room) {
+    limit_room(room, limits);
+    return ActResult{};
+  });
+}
+
+void HostedRoom::write_snapshot(std::string path, Done done) {
+  auto work = [self = shared_from_this(), path = std::move(path), done = std::move(done)] {
+    if (!self->room_) return answer(done, {kConflict, "the room has ended"});
+    std::vector<std::byte> state = state_of(*self->room_);
+    if (state.empty()) {
+      return answer(done, {kNotHere, "snapshot: rooms of this build do not hand out their state"});
+    }
+    // The disk is for another thread; this one makes ticks.
+    asio::post(self->site_.slow, [path, done, state = std::move(state)] {
+      answer(done, write_new_file(path, state));
+    });
+  };
+  asio::post(strand_, std::move(work));
 }
 
 void HostedRoom::hurry(std::string reason) {

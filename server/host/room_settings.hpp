@@ -21,7 +21,7 @@ struct RoomSettings {
   std::string log;            ///< Path of the input log, which must not exist yet; "": none.
   std::string log_directory;  ///< Where `log` is "": a new file in here for each room; "": none.
   LogSync log_sync = LogSync::kInterval;
-  bool stop_on_log_error = false;         ///< Else the match goes on, and says that it is not durable.
+  bool stop_on_log_error = false;  ///< Else the match goes on, and says that it is not durable.
   std::chrono::milliseconds empty_ttl{0};  ///< Without clients for so long it ends; 0: never.
   Limits limits;
 };

@@ -47,8 +47,7 @@ class DurationMeter {
 };
 
 /// By protocol::Refusal.
-using RefusalMeters =
-    std::array<Meter, static_cast<std::size_t>(protocol::kLastRefusal) + 1>;
+using RefusalMeters = std::array<Meter, static_cast<std::size_t>(protocol::kLastRefusal) + 1>;
 
 /// What a room shows of itself: written on the room's strand, read by everybody. 1 KiB.
 struct RoomMeters {
