@@ -10,9 +10,13 @@ constexpr std::size_t kTextBytesMax = 512;
 AdminFields::AdminFields(const std::string& body) {
   if (body.empty()) return;
   nlohmann::json parsed = nlohmann::json::parse(body, nullptr, /*allow_exceptions=*/false);
-  if (parsed.is_discarded()) return complain("body: it is not JSON");
-  if (!parsed.is_object()) return complain("body: it is not a JSON object");
-  fields_ = std::move(parsed);
+  if (parsed.is_discarded()) {
+    complain("body: it is not JSON");
+  } else if (!parsed.is_object()) {
+    complain("body: it is not a JSON object");
+  } else {
+    fields_ = std::move(parsed);
+  }
 }
 
 void AdminFields::complain(const std::string& mistake) {
