@@ -1,0 +1,73 @@
+#pragma once
+
+#include <asio.hpp>
+#include <chrono>
+#include <cstdint>
+#include <memory>
+#include <mutex>
+#include <string>
+#include <vector>
+
+#include "transport/stream.hpp"
+
+namespace cycloid::server {
+
+/// There is no "if the client likes": whoever sits between the two could then make both like none.
+enum class TlsMode : std::uint8_t { kOff, kRequired };
+
+/// Both in PEM. The chain begins with the server's own certificate.
+struct TlsFiles {
+  std::string certificate_chain;
+  std::string private_key;
+};
+
+/// The server's certificate: TLS 1.2 and later, ciphers with forward secrecy only, no compression,
+/// no renegotiation, no resumption. May be used from several threads.
+class ServerTls {
+ public:
+  /// @throws std::runtime_error that names the file and what is wrong with it.
+  explicit ServerTls(TlsFiles files);
+
+  /// Reads the files again: "" and connections from now on get what is in them, or why not, and
+  /// nothing has changed. Those that live keep what they have.
+  std::string reload();
+  /// For a new `transport::Stream`. Never null.
+  transport::Stream::Context current() const;
+  /// When the certificate in use ends to be valid, in Unix seconds: clients refuse it from then on.
+  std::int64_t expires_unix_s() const;
+  /// What a client may pin: SHA-256 of the certificate in use, 64 hexadecimal digits.
+  std::string fingerprint() const;
+
+ private:
+  struct Loaded {
+    transport::Stream::Context context;
+    std::int64_t expires_unix_s = 0;
+    std::string fingerprint;
+  };
+  static Loaded load(const TlsFiles& files);
+
+  TlsFiles files_;
+  mutable std::mutex mutex_;
+  Loaded loaded_;
+};
+
+struct Handshake {
+  enum class End : std::uint8_t {
+    kDone,       ///< Through TLS; or the stream is TCP alone, and there was nothing to do.
+    kPlaintext,  ///< The client does not speak TLS. It may still be told so, on the socket.
+    kOverdue,    ///< Not done in time.
+    kFailed,     ///< The client hung up, or there is no common ground.
+  };
+  End end = End::kDone;
+  std::string reason;  ///< For the log, where it is not done.
+};
+
+/// Shakes hands as the server. At the deadline the stream is closed, whatever bytes have come.
+/// @pre runs on the strand of the stream, which outlives it
+asio::awaitable<Handshake> shake_hands(transport::Stream& stream,
+                                       std::chrono::steady_clock::time_point deadline);
+
+/// What a client that does not speak TLS is told: an encoded Refused that it understands.
+std::vector<std::byte> tls_required_message();
+
+}  // namespace cycloid::server
