@@ -18,7 +18,7 @@ HostOptions host_options(const ServeOptions& options) {
   host.catch_signals = options.catch_signals;
   host.drain = options.drain;
   host.ends_with_last_room = true;
-  host.limits.gate.deadline_ns = options.limits.handshake.count();
+  host.gate.hello_deadline_ns = options.limits.handshake.count();
   host.limits.room = options.limits;
   NamedRoom room;
   room.name = kOnlyRoom;

@@ -4,7 +4,6 @@
 #include <toml++/toml.h>
 
 #include <algorithm>
-#include <asio/ip/address.hpp>
 #include <cmath>
 #include <filesystem>
 #include <fstream>
@@ -12,6 +11,7 @@
 #include <set>
 #include <utility>
 
+#include "server/config/checks.hpp"
 #include "server/config/keys.hpp"
 
 namespace cycloid::server {
@@ -290,51 +290,12 @@ class Reader {
     }
   }
 
-  void check_address(const std::string& key, const std::string& text) {
-    asio::error_code error;
-    (void)asio::ip::make_address(text, error);
-    if (error) complain(lines_[key], key, "\"" + text + "\" is no IP address");
-  }
-
   void check_whole() {
-    check_address("server.address", config_.host.address);
-    check_address("operation.address", config_.operation.address);
-    check_admin();
-    const auto joins = [](const auto& named) { return named.second.on_first_join; };
-    const bool made_later = std::ranges::any_of(config_.host.templates, joins) ||
-                            (config_.operation.admin && !config_.host.templates.empty());
-    if (config_.host.rooms.empty() && !made_later) {
-      complain(0, "room", "there is no room, and nothing that could make one");
-    }
-    if (config_.host.rooms.size() > config_.host.limits.rooms_max) {
-      complain(lines_["limits.rooms"], "limits.rooms",
-               "the file has " + std::to_string(config_.host.rooms.size()) + " rooms");
-    }
-  }
-
-  void check_admin() {
-    const std::string key = "admin.token_file";
-    if (config_.admin_token_file.empty()) return;
-    AdminOptions admin;
-    std::string mistake;
-    admin.token = read_admin_token(config_.admin_token_file, mistake);
-    if (!mistake.empty()) complain(lines_[key], key, mistake);
-    admin.snapshot_directory = config_.snapshot_directory;
-    admin.drain = config_.host.drain;
-    config_.operation.admin = std::move(admin);
-    if (!config_.operation_on) complain(lines_[key], key, "operation.enabled is false");
-    asio::error_code error;
-    const auto address = asio::ip::make_address(config_.operation.address, error);
-    if (!error && !address.is_loopback() && !config_.admin_remote) {
-      complain(lines_["operation.address"], "operation.address",
-               "others could reach the admin interface there; where that is wanted, write "
-               "admin.remote = true");
-    }
-    const std::string& directory = config_.snapshot_directory;
-    if (!directory.empty() && !std::filesystem::is_directory(directory)) {
-      complain(lines_["admin.snapshot_directory"], "admin.snapshot_directory",
-               directory + " is no directory");
-    }
+    const auto complain_of = [this](const std::string& key, std::string reason) {
+      const auto at = lines_.find(key);
+      complain(at == lines_.end() ? 0 : at->second, key, std::move(reason));
+    };
+    check_config(config_, complain_of);
   }
 
   const SceneLoader& load_scene_;
@@ -368,18 +329,6 @@ ConfigResult read_config_file(const std::string& path, const SceneLoader& load_s
   return result;
 }
 
-std::string config_mistakes_text(const std::string& file,
-                                 const std::vector<ConfigMistake>& mistakes) {
-  std::string text;
-  for (const ConfigMistake& mistake : mistakes) {
-    if (!text.empty()) text += '\n';
-    text += file;
-    if (mistake.line > 0) text += ":" + std::to_string(mistake.line);
-    text += ": " + (mistake.key.empty() ? "" : mistake.key + ": ") + mistake.reason;
-  }
-  return text;
-}
-
 std::vector<ConfigKeyText> config_keys() {
   std::vector<ConfigKeyText> texts;
   for (const ConfigSection& section : config_sections()) {
@@ -388,23 +337,6 @@ std::vector<ConfigKeyText> config_keys() {
   add_texts("template.NAME", config_template_keys(), texts);
   add_texts("room", config_room_keys(), texts);
   return texts;
-}
-
-std::vector<std::string> fixed_differences(const ServerConfig& running,
-                                           const ServerConfig& wanted) {
-  std::set<std::string> reloads;
-  for (const ConfigKeyText& key : config_keys()) {
-    if (key.reloads) reloads.insert(key.name);
-  }
-  std::set<std::string> fixed;
-  for (const auto& [a, b] : {std::pair(&running, &wanted), std::pair(&wanted, &running)}) {
-    for (const auto& [key, value] : a->values) {
-      const auto other = b->values.find(key);
-      const bool same = other != b->values.end() && other->second == value;
-      if (!same && !reloads.contains(key)) fixed.insert(key);
-    }
-  }
-  return {fixed.begin(), fixed.end()};
 }
 
 }  // namespace cycloid::server

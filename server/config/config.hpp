@@ -23,6 +23,9 @@ struct ServerConfig {
   std::string admin_token_file;  ///< "": no admin interface.
   bool admin_remote = false;
   std::string snapshot_directory;
+  std::string token_keys_file;  ///< Public keys, one in a line.
+  bool tls_required = false;
+  TlsFiles tls_files;
   /// Every key and its value as text, so that two files can be compared.
   std::map<std::string, std::string> values;
 };
@@ -42,8 +45,8 @@ struct ConfigResult {
 
 using SceneLoader = std::function<scenes::Loaded(const std::string&)>;
 
-/// Reads TOML. Opens no file but those that it names: scenes, by `load_scene`, and the admin's
-/// token.
+/// Reads TOML. Opens no file but those that it names: scenes, by `load_scene`, the admin's token,
+/// the keys of tokens, and the certificate.
 ConfigResult read_config(std::string_view text, const SceneLoader& load_scene);
 /// The same of a file; one that cannot be read is a mistake.
 ConfigResult read_config_file(const std::string& path, const SceneLoader& load_scene);

@@ -97,13 +97,20 @@ ConfigSection limits_section() {
   using C = ServerConfig;
   return {
       "limits",
-      {integer("connections", 1, 1000000, "12000", true,
-               [](C& c, const Value& v) { c.host.limits.connections_max = as<std::size_t>(v); }),
-       integer("pending", 1, 1000000, "12000", true,
-               [](C& c, const Value& v) { c.host.limits.gate.pending_max = as<std::size_t>(v); }),
-       integer(
-           "hello_ms", 1, 600000, "5000", true,
-           [](C& c, const Value& v) { c.host.limits.gate.deadline_ns = v.integer * 1'000'000; }),
+      {integer("connections", 1, 1000000, "16384", false,
+               [](C& c, const Value& v) { c.host.gate.connections_max = as<std::size_t>(v); }),
+       integer("pending", 1, 1000000, "12000", false,
+               [](C& c, const Value& v) { c.host.gate.pending_max = as<std::size_t>(v); }),
+       integer("hello_ms", 1, 600000, "5000", false,
+               [](C& c, const Value& v) { c.host.gate.hello_deadline_ns = v.integer * 1'000'000; }),
+       integer("address_connections", 1, 1000000, "64", false,
+               [](C& c, const Value& v) {
+                 c.host.gate.addresses.host_connections_max = as<std::uint32_t>(v);
+               }),
+       integer("address_pending", 1, 1000000, "16", false,
+               [](C& c, const Value& v) {
+                 c.host.gate.addresses.host_pending_max = as<std::uint32_t>(v);
+               }),
        integer("rooms", 1, 100000, "256", true,
                [](C& c, const Value& v) { c.host.limits.rooms_max = as<std::size_t>(v); }),
        integer(
@@ -134,11 +141,49 @@ ConfigSection limits_section() {
        })}};
 }
 
+ConfigSection admission_section() {
+  using C = ServerConfig;
+  return {"admission",
+          {Key{"tokens",
+               Kind::kText,
+               0,
+               0,
+               "ignored",
+               {"ignored", "optional", "required"},
+               false,
+               [](C& c, const Value& v) {
+                 c.host.gate.tokens = v.text == "required"   ? TokenPolicy::kRequired
+                                      : v.text == "optional" ? TokenPolicy::kOptional
+                                                             : TokenPolicy::kIgnored;
+               }},
+           text("keys_file", "", true, [](C& c, const Value& v) { c.token_keys_file = v.text; }),
+           integer("leeway_s", 0, 3600, "30", false,
+                   [](C& c, const Value& v) { c.host.gate.leeway_s = v.integer; })}};
+}
+
+ConfigSection tls_section() {
+  using C = ServerConfig;
+  return {"tls",
+          {Key{"mode",
+               Kind::kText,
+               0,
+               0,
+               "off",
+               {"off", "required"},
+               false,
+               [](C& c, const Value& v) { c.tls_required = v.text == "required"; }},
+           text("certificate_file", "", false,
+                [](C& c, const Value& v) { c.tls_files.certificate_chain = v.text; }),
+           text("key_file", "", false,
+                [](C& c, const Value& v) { c.tls_files.private_key = v.text; })}};
+}
+
 }  // namespace
 
 const std::vector<ConfigSection>& config_sections() {
   static const std::vector<ConfigSection> kSections = {
-      server_section(), sockets_section(), limits_section(), operation_section(), admin_section()};
+      server_section(), sockets_section(),   limits_section(), admission_section(),
+      tls_section(),    operation_section(), admin_section()};
   return kSections;
 }
 

@@ -41,8 +41,13 @@ Host::Host(HostOptions options)
                            trouble,
                            [this] { meters_->accept_failures.add(); }};
   listener_.emplace(accept_strand_, std::move(listener));
-  GatehouseOptions gatehouse{limits_.gate, options_.sockets, limits_.connections_max,
-                             [this](Entrant entrant) { on_admitted(std::move(entrant)); }};
+  GatehouseOptions gatehouse;
+  gatehouse.gate = options_.gate;
+  gatehouse.sockets = options_.sockets;
+  gatehouse.tls = options_.tls;
+  gatehouse.logger = options_.logger;
+  gatehouse.find_room = [this](const std::string& room, const Admission&) { return judge(room); };
+  gatehouse.on_admitted = [this](Entrant entrant) { on_admitted(std::move(entrant)); };
   gatehouse_.emplace(accept_strand_, meters_, std::move(gatehouse));
   options_.log_calls = metered(std::move(options_.log_calls), meters_);
   start_rooms();
@@ -53,8 +58,8 @@ Host::~Host() {
 }
 
 RoomSite Host::site() {
-  const auto turn_away = [this](asio::ip::tcp::socket socket, const protocol::Refused& refused) {
-    auto shared = std::make_shared<asio::ip::tcp::socket>(std::move(socket));
+  const auto turn_away = [this](Entrant entrant, const protocol::Refused& refused) {
+    auto shared = std::make_shared<Entrant>(std::move(entrant));
     asio::post(accept_strand_,
                [this, shared, refused] { gatehouse_->turn_away(std::move(*shared), refused); });
   };
@@ -160,7 +165,7 @@ void Host::drain(const std::string& reason, std::chrono::milliseconds deadline) 
   asio::post(accept_strand_, [this, reason, deadline] {
     if (draining_.exchange(true)) return;
     options_.logger->info("draining: {}; rooms end within {} ms", reason, deadline.count());
-    gatehouse_->set_closed(protocol::Refused{protocol::Refusal::kDraining, "the server goes away"});
+    gatehouse_->drain("the server goes away: " + reason);
     for (const auto& room : rooms()) room->act(LifeAct::kDrain, reason, deadline, {});
     finish_if_over();
   });
@@ -169,7 +174,7 @@ void Host::drain(const std::string& reason, std::chrono::milliseconds deadline) 
 void Host::end(const std::string& reason) {
   asio::post(accept_strand_, [this, reason] {
     draining_ = true;
-    gatehouse_->set_closed(protocol::Refused{protocol::Refusal::kDraining, reason});
+    gatehouse_->drain("the server goes away: " + reason);
     for (const auto& room : rooms()) {
       room->act(LifeAct::kEnd, reason, std::chrono::milliseconds(0), {});
     }
@@ -194,9 +199,12 @@ void Host::set_limits(const HostLimits& limits) {
     const std::lock_guard lock(directory_mutex_);
     limits_ = limits;
   }
-  asio::post(accept_strand_,
-             [this, limits] { gatehouse_->set_limits(limits.gate, limits.connections_max); });
   for (const auto& room : rooms()) room->set_limits(limits.room);
+}
+
+void Host::set_token_keys(std::vector<PublicKey> keys) {
+  asio::post(accept_strand_,
+             [this, keys = std::move(keys)]() mutable { gatehouse_->set_keys(std::move(keys)); });
 }
 
 void Host::gone(const std::string& name, const ServeReport& report) {

@@ -21,8 +21,6 @@ namespace cycloid::server {
 
 /// What may change while the host runs.
 struct HostLimits {
-  GateLimits gate;
-  std::size_t connections_max = 12000;
   std::size_t rooms_max = 256;
   Limits room;  ///< Of every room.
 };
@@ -42,6 +40,8 @@ struct HostOptions {
   std::chrono::milliseconds drain{0};
   bool ends_with_last_room = false;  ///< Else it waits for more.
   SocketOptions sockets;
+  GateOptions gate;
+  std::shared_ptr<ServerTls> tls;  ///< None: TCP alone.
   HostLimits limits;
   std::vector<NamedRoom> rooms;                   ///< Made before the first connection.
   std::map<std::string, RoomTemplate> templates;  ///< What others are made of.
@@ -90,6 +90,7 @@ class Host {
   /// "", or which room has not made a tick for so many ticks though one was due.
   std::string stuck(std::uint32_t ticks_max) const;
   void set_limits(const HostLimits& limits);
+  void set_token_keys(std::vector<PublicKey> keys);
   const HostMeters& meters() const { return *meters_; }
   const std::shared_ptr<spdlog::logger>& logger() const { return options_.logger; }
 
@@ -98,6 +99,10 @@ class Host {
   void run_pool();
   void run_thread();
   void wait_for_signal();
+  /// What the gate is told of a name.
+  RoomVerdict judge(const std::string& wanted) const;
+  std::shared_ptr<HostedRoom> find_or_only(const std::string& wanted) const;
+  bool makes_on_join(const std::string& wanted) const;
   void on_admitted(Entrant entrant);
   void join_new_room(const std::string& name, Entrant entrant);
   ActResult reserve(const std::string& name, const std::string& of_template, RoomSettings& settings,

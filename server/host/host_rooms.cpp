@@ -115,30 +115,44 @@ void Host::forget(const std::string& name, std::uint32_t slot) {
   finish_if_over();
 }
 
-void Host::on_admitted(Entrant entrant) {
-  const std::string& wanted = entrant.admission.hello.room;
-  std::shared_ptr<HostedRoom> room;
-  protocol::Refused refused{protocol::Refusal::kNoSuchRoom, "there is no room \"" + wanted + "\""};
+std::shared_ptr<HostedRoom> Host::find_or_only(const std::string& wanted) const {
+  if (!wanted.empty()) return find(wanted);
+  const auto all = rooms();
+  return all.size() == 1 ? all.front() : nullptr;
+}
+
+bool Host::makes_on_join(const std::string& wanted) const {
+  const std::size_t colon = wanted.find(':');
+  if (colon == std::string::npos || !room_name_mistake(wanted).empty()) return false;
+  const auto known = options_.templates.find(wanted.substr(0, colon));
+  return known != options_.templates.end() && known->second.on_first_join;
+}
+
+RoomVerdict Host::judge(const std::string& wanted) const {
+  if (const auto room = find_or_only(wanted)) {
+    const auto closed = room->closed();
+    if (!closed) return {RoomFound::kExists, ""};
+    const bool locked = closed->code == protocol::Refusal::kRoomLocked;
+    return {locked ? RoomFound::kLocked : RoomFound::kDraining, closed->reason};
+  }
   if (wanted.empty()) {
-    const auto all = rooms();
-    if (all.size() == 1) room = all.front();
-    if (all.size() != 1) {
-      refused.reason = "the hello names no room, and here are " + std::to_string(all.size());
-    }
-  } else {
-    room = find(wanted);
+    return {RoomFound::kNoSuchRoom,
+            "the hello names no room, and here are " + std::to_string(rooms().size())};
   }
-  if (room == nullptr) {
-    const auto known = options_.templates.find(wanted.substr(0, wanted.find(':')));
-    const bool makes = wanted.find(':') != std::string::npos && known != options_.templates.end() &&
-                       known->second.on_first_join;
-    if (makes) return join_new_room(wanted, std::move(entrant));
-    return gatehouse_->turn_away(std::move(entrant.socket), refused);
+  if (!makes_on_join(wanted)) {
+    return {RoomFound::kNoSuchRoom, "there is no room \"" + wanted + "\""};
   }
-  if (const auto closed = room->closed()) {
-    return gatehouse_->turn_away(std::move(entrant.socket), *closed);
-  }
-  room->enter(std::move(entrant));
+  const std::lock_guard lock(directory_mutex_);
+  const bool there = directory_.contains(wanted);  // It is being made for somebody else.
+  if (there || directory_.size() < limits_.rooms_max) return {RoomFound::kCreated, ""};
+  return {RoomFound::kFull, std::to_string(directory_.size()) + " rooms, of at most " +
+                                std::to_string(limits_.rooms_max)};
+}
+
+void Host::on_admitted(Entrant entrant) {
+  const std::string wanted = entrant.admission.hello.room;
+  if (const auto room = find_or_only(wanted)) return room->enter(std::move(entrant));
+  join_new_room(wanted, std::move(entrant));
 }
 
 void Host::join_new_room(const std::string& name, Entrant entrant) {
@@ -154,7 +168,7 @@ void Host::join_new_room(const std::string& name, Entrant entrant) {
       if (room != nullptr) {
         room->enter(std::move(joiner));
       } else {
-        gatehouse_->turn_away(std::move(joiner.socket), {code, result.text});
+        gatehouse_->turn_away(std::move(joiner), {code, result.text});
       }
     }
   };

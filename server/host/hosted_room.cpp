@@ -198,7 +198,7 @@ void HostedRoom::enter(Entrant entrant) {
 void HostedRoom::admit(Entrant entrant) {
   if (const auto refused = closed(); refused || !room_) {
     const protocol::Refused over{protocol::Refusal::kDraining, "the room has ended"};
-    return site_.turn_away(std::move(entrant.socket), refused ? *refused : over);
+    return site_.turn_away(std::move(entrant), refused ? *refused : over);
   }
   SessionPlace place{strand_, *room_, scratch_, shared_from_this()};
   const auto session = std::make_shared<Session>(std::move(entrant), std::move(place));

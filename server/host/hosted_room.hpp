@@ -31,7 +31,7 @@ struct RoomSite {
   LogCalls log_calls;
   std::int64_t epoch_ns = 0;  ///< Where the rasters of all rooms begin.
   /// A connection that cannot come in, and why. Any thread.
-  std::function<void(asio::ip::tcp::socket, const protocol::Refused&)> turn_away;
+  std::function<void(Entrant, const protocol::Refused&)> turn_away;
   /// The room is over and nothing of it runs any more. Any thread.
   std::function<void(const std::string& name, const ServeReport&)> gone;
 };
@@ -112,7 +112,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   LifeCycle life_;
   std::optional<Room> room_;
   std::vector<std::weak_ptr<Session>> sessions_;
-  std::array<std::byte, 16384> scratch_;
+  std::array<std::byte, kSessionReadBytes> scratch_;
   std::int64_t drain_at_ns_ = 0;
   std::string drain_reason_;
   std::int64_t empty_since_ns_ = 0;

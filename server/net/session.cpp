@@ -43,7 +43,7 @@ void Session::enter() {
 void Session::wake() {
   reader_wake_.cancel();
   writer_wake_.cancel();
-  if (lingers_ || !entrant_.socket.is_open() || !place_.room.wants_close(id_)) return;
+  if (lingers_ || !entrant_.stream->is_open() || !place_.room.wants_close(id_)) return;
   lingers_ = true;
   linger_.expires_after(kLinger);
   linger_.async_wait([self = shared_from_this()](const asio::error_code&) { self->close(); });
@@ -55,54 +55,83 @@ void Session::say(Shared message) {
 }
 
 void Session::close() {
-  if (!entrant_.socket.is_open()) return;
+  if (!entrant_.stream->is_open()) return;
   place_.room.disconnect(id_);
-  asio::error_code ignored;  // Closed is closed.
-  entrant_.socket.close(ignored);
+  entrant_.stream->close();
   reader_wake_.cancel();
   writer_wake_.cancel();
   linger_.cancel();
 }
 
+asio::awaitable<std::size_t> Session::read(asio::error_code& error) {
+  auto done = asio::redirect_error(asio::use_awaitable, error);
+  transport::Stream& stream = *entrant_.stream;
+  if (stream.is_tls()) {
+    tls_bytes_.resize(kSessionTlsReadBytes);
+    const auto target = asio::buffer(tls_bytes_);
+    const std::size_t bytes = co_await stream.async_read_some(target, done);
+    co_return bytes;
+  }
+  // No bytes are there to read before they are read, so one array does for all of a room.
+  const auto scratch = asio::buffer(place_.scratch.data(), place_.scratch.size());
+  for (;;) {
+    co_await stream.socket().async_wait(asio::ip::tcp::socket::wait_read, done);
+    if (error) co_return 0;
+    const std::size_t bytes = stream.socket().read_some(scratch, error);
+    if (error != asio::error::would_block) co_return bytes;
+  }
+}
+
 asio::awaitable<void> Session::read_loop() {
   asio::error_code error;  // Peers going away is an expected event, so no exceptions here.
   auto done = asio::redirect_error(asio::use_awaitable, error);
-  const auto scratch = asio::buffer(place_.scratch.data(), place_.scratch.size());
-  asio::ip::tcp::socket& socket = entrant_.socket;
-  socket.non_blocking(true, error);
-  while (socket.is_open()) {
+  transport::Stream& stream = *entrant_.stream;
+  stream.socket().non_blocking(true, error);
+  while (stream.is_open()) {
     if (!place_.room.wants_bytes(id_)) {  // Until the next tick they wait in the peer's network.
       reader_wake_.expires_at(asio::steady_timer::time_point::max());
       co_await reader_wake_.async_wait(done);
       continue;
     }
-    co_await socket.async_wait(asio::ip::tcp::socket::wait_read, done);
+    const std::size_t bytes = co_await read(error);
     if (error) break;
-    const std::size_t bytes = socket.read_some(scratch, error);
-    if (error == asio::error::would_block) continue;
-    if (error) break;
-    place_.room.receive(id_, std::span<const std::byte>(place_.scratch).first(bytes));
+    const std::span<const std::byte> source = stream.is_tls() ? tls_bytes_ : place_.scratch;
+    place_.room.receive(id_, source.first(bytes));
     wake();
   }
   // Who has the last word still to come may hang up its own side; the writer, or the end of
   // lingering, closes then.
   reader_done_ = true;
-  const bool last_word_waits = lingers_ && error == asio::error::eof && !last_word_said_;
+  const bool last_word_waits = lingers_ && transport::is_end(error) && !last_word_said_;
   if (!last_word_waits) close();
+}
+
+asio::awaitable<void> Session::write(std::vector<Shared> output, asio::error_code& error) {
+  auto done = asio::redirect_error(asio::use_awaitable, error);
+  transport::Stream& stream = *entrant_.stream;
+  if (!stream.is_tls()) {
+    std::vector<asio::const_buffer> buffers;
+    for (const Shared& bytes : output) buffers.emplace_back(bytes->data(), bytes->size());
+    co_await asio::async_write(stream.socket(), buffers, done);
+    co_return;
+  }
+  // Of several buffers each would be a record and a write of its own.
+  protocol::Bytes joined;
+  for (const Shared& bytes : output) joined.insert(joined.end(), bytes->begin(), bytes->end());
+  const auto source = asio::buffer(joined);
+  co_await asio::async_write(stream, source, done);
 }
 
 asio::awaitable<void> Session::write_loop() {
   asio::error_code error;
   auto done = asio::redirect_error(asio::use_awaitable, error);
-  asio::ip::tcp::socket& socket = entrant_.socket;
-  while (socket.is_open()) {
+  transport::Stream& stream = *entrant_.stream;
+  while (stream.is_open()) {
     if (place_.room.has_output(id_) || said_) {
       std::vector<Shared> output = place_.room.take_output(id_);
       if (said_ && !lingers_) output.push_back(said_);
       said_.reset();
-      std::vector<asio::const_buffer> buffers;
-      for (const Shared& bytes : output) buffers.emplace_back(bytes->data(), bytes->size());
-      co_await asio::async_write(socket, buffers, done);
+      co_await write(std::move(output), error);
       if (error) break;
       continue;
     }
@@ -110,7 +139,7 @@ asio::awaitable<void> Session::write_loop() {
       // The peer reads to the end and hangs up; closing here would reset what it has not read.
       last_word_said_ = true;
       asio::error_code ignored;
-      socket.shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+      stream.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
       if (!reader_done_) co_return;
       break;
     }

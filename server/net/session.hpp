@@ -9,16 +9,21 @@
 
 #include "server/room/admission.hpp"
 #include "server/room/room.hpp"
+#include "transport/stream.hpp"
 
 namespace cycloid::server {
 
 /// A connection that the gate has let through, on its way to its room.
 struct Entrant {
-  asio::ip::tcp::socket socket;
+  std::unique_ptr<transport::Stream> stream;
   Admission admission;
   protocol::Bytes rest;         ///< What came behind the hello.
-  std::shared_ptr<void> count;  ///< Dies with the connection, which is counted by that.
+  std::shared_ptr<void> count;  ///< Let go behind the connection, which is counted by that.
 };
+
+/// Of one read, over TCP or through TLS.
+inline constexpr std::size_t kSessionReadBytes = 16384;
+inline constexpr std::size_t kSessionTlsReadBytes = 4096;
 
 /// Where a session lives. All of it outlives the session, because `keep` does.
 struct SessionPlace {
@@ -50,14 +55,17 @@ class Session : public std::enable_shared_from_this<Session> {
   asio::awaitable<void> read_loop();
   asio::awaitable<void> write_loop();
   void enter();
+  asio::awaitable<std::size_t> read(asio::error_code& error);
+  asio::awaitable<void> write(std::vector<Shared> output, asio::error_code& error);
 
   Entrant entrant_;
   SessionPlace place_;
   PeerId id_ = kNobody;
   asio::steady_timer reader_wake_;  ///< Waits for ever; cancelled to go on.
   asio::steady_timer writer_wake_;
-  asio::steady_timer linger_;  ///< Bounds the end of a connection.
-  Shared said_;                ///< By `say`, and not yet written.
+  asio::steady_timer linger_;         ///< Bounds the end of a connection.
+  std::vector<std::byte> tls_bytes_;  ///< Read through TLS; empty over TCP alone.
+  Shared said_;                       ///< By `say`, and not yet written.
   bool lingers_ = false;
   bool reader_done_ = false;
   bool last_word_said_ = false;
