@@ -202,6 +202,10 @@ void Host::set_limits(const HostLimits& limits) {
   for (const auto& room : rooms()) room->set_limits(limits.room);
 }
 
+void Host::set_drain(std::chrono::milliseconds drain) {
+  asio::post(accept_strand_, [this, drain] { options_.drain = drain; });
+}
+
 void Host::set_token_keys(std::vector<PublicKey> keys) {
   asio::post(accept_strand_,
              [this, keys = std::move(keys)]() mutable { gatehouse_->set_keys(std::move(keys)); });

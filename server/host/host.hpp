@@ -91,6 +91,7 @@ class Host {
   std::string stuck(std::uint32_t ticks_max) const;
   void set_limits(const HostLimits& limits);
   void set_token_keys(std::vector<PublicKey> keys);
+  void set_drain(std::chrono::milliseconds drain);
   const HostMeters& meters() const { return *meters_; }
   const std::shared_ptr<spdlog::logger>& logger() const { return options_.logger; }
 
