@@ -46,7 +46,9 @@ Host::Host(HostOptions options)
   gatehouse.sockets = options_.sockets;
   gatehouse.tls = options_.tls;
   gatehouse.logger = options_.logger;
-  gatehouse.find_room = [this](const std::string& room, const Admission&) { return judge(room); };
+  gatehouse.find_room = [this](const std::string& room, const Admission& admission) {
+    return judge(room, admission);
+  };
   gatehouse.on_admitted = [this](Entrant entrant) { on_admitted(std::move(entrant)); };
   gatehouse_.emplace(accept_strand_, meters_, std::move(gatehouse));
   options_.log_calls = metered(std::move(options_.log_calls), meters_);

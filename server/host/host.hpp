@@ -101,7 +101,7 @@ class Host {
   void run_thread();
   void wait_for_signal();
   /// What the gate is told of a name.
-  RoomVerdict judge(const std::string& wanted) const;
+  RoomVerdict judge(const std::string& wanted, const Admission& admission) const;
   std::shared_ptr<HostedRoom> find_or_only(const std::string& wanted) const;
   bool makes_on_join(const std::string& wanted) const;
   void on_admitted(Entrant entrant);

@@ -128,9 +128,9 @@ bool Host::makes_on_join(const std::string& wanted) const {
   return known != options_.templates.end() && known->second.on_first_join;
 }
 
-RoomVerdict Host::judge(const std::string& wanted) const {
+RoomVerdict Host::judge(const std::string& wanted, const Admission& admission) const {
   if (const auto room = find_or_only(wanted)) {
-    const auto closed = room->closed();
+    const auto closed = room->closed(admission);
     if (!closed) return {RoomFound::kExists, ""};
     const bool locked = closed->code == protocol::Refusal::kRoomLocked;
     return {locked ? RoomFound::kLocked : RoomFound::kDraining, closed->reason};

@@ -6,6 +6,7 @@
 #include <utility>
 
 #include "scenes/catalogue.hpp"
+#include "server/admission/random.hpp"
 #include "server/host/process_time.hpp"
 
 namespace cycloid::server {
@@ -44,6 +45,7 @@ spdlog::level::level_enum level_of(Notice::Kind kind) {
     case Notice::Kind::kJoin:
     case Notice::Kind::kLeave:
     case Notice::Kind::kEnd:
+    case Notice::Kind::kAct:
       return spdlog::level::info;
     case Notice::Kind::kFault:
     case Notice::Kind::kLog:
@@ -65,8 +67,7 @@ HostedRoom::HostedRoom(RoomSite site, std::string name, RoomSettings settings, s
       simulation_(make_simulation(settings_)) {
   rate_millihertz_ = rate_of(settings_, *simulation_);
   seats_ = simulation_->seats();
-  log_ = std::make_unique<RoomLog>(open_room_log(settings_, name_, site_.log_calls), meters_,
-                                   site_.slow);
+  log_ = std::make_unique<RoomLog>(open_room_log(settings_, name_, site_.log_calls), site_.slow);
   meters_.tick_ns = tick_ns();
   meters_.durable.set(1);
 }
@@ -91,11 +92,13 @@ void HostedRoom::open_room() {
   options.tick_rate_millihertz = rate_millihertz_;
   options.ticks = settings_.ticks;
   options.stop_on_log_error = settings_.stop_on_log_error;
+  options.name = name_;
   settings_.scene = {};  // The simulation has it; a landscape is large.
   RoomHooks hooks;
   hooks.now_ns = [this] { return clock_.room_ns(process_now_ns()); };
   hooks.notice = [this](const Notice& said) { take_notice(said); };
   hooks.log = log_.get();
+  hooks.random = system_random();
   room_.emplace(options, std::move(*simulation_), std::move(hooks));
   simulation_.reset();
   empty_since_ns_ = now_ns;
@@ -125,12 +128,11 @@ void HostedRoom::on_tick() {
     const std::int64_t late_ns = begin_ns - clock_.process_ns(room_->next_deadline_ns());
     const std::uint64_t before = room_->tick();
     room_->advance();
-    const std::uint64_t made = room_->tick() - before;
-    if (made > 0) {
+    if (room_->tick() > before) {  // Else it waits for an input, or was rewound.
+      const std::uint64_t made = room_->tick() - before;
       meters_.lateness.add(static_cast<std::uint64_t>(std::max<std::int64_t>(late_ns, 0)));
       const auto took_ns = static_cast<std::uint64_t>(process_now_ns() - begin_ns);
       meters_.tick_time.add(took_ns / made, made);
-      meters_.catch_up_ticks.add(made - 1);
     }
   }
   wake_sessions();
@@ -196,7 +198,7 @@ void HostedRoom::enter(Entrant entrant) {
 }
 
 void HostedRoom::admit(Entrant entrant) {
-  if (const auto refused = closed(); refused || !room_) {
+  if (const auto refused = closed(entrant.admission); refused || !room_) {
     const protocol::Refused over{protocol::Refusal::kDraining, "the room has ended"};
     return site_.turn_away(std::move(entrant), refused ? *refused : over);
   }
@@ -206,11 +208,13 @@ void HostedRoom::admit(Entrant entrant) {
   session->start();
 }
 
-std::optional<protocol::Refused> HostedRoom::closed() const {
+std::optional<protocol::Refused> HostedRoom::closed(const Admission& admission) const {
+  // A lock shuts out neither an admin nor who only comes back.
+  const bool passes = admission.role == Role::kAdmin || !admission.hello.resume.empty();
   switch (shown_stage_.load()) {
     case LifeStage::kRunning:
     case LifeStage::kPaused:
-      if (!shown_locked_) return std::nullopt;
+      if (!shown_locked_ || passes) return std::nullopt;
       return protocol::Refused{protocol::Refusal::kRoomLocked, "room " + name_ + " is locked"};
     case LifeStage::kDraining:
       return protocol::Refused{protocol::Refusal::kDraining, "room " + name_ + " is draining"};
@@ -237,6 +241,13 @@ void HostedRoom::publish() {
   meters_.bytes_in.set(statistics.bytes_in);
   meters_.bytes_out.set(statistics.bytes_out);
   meters_.slowed_ns.set(statistics.slowed_ns);
+  meters_.inputs_replaced.set(statistics.inputs_replaced);
+  meters_.catch_up_ticks.set(statistics.catch_up_ticks);
+  meters_.encodes.set(statistics.encodes);
+  meters_.queue_bytes.set(statistics.queue_bytes);
+  for (std::size_t code = 0; code < statistics.refusals_by_code.size(); ++code) {
+    meters_.refusals[code].set(statistics.refusals_by_code[code]);
+  }
   if (log_ != nullptr) meters_.durable.set(log_->durable() ? 1 : 0);
 }
 

@@ -76,8 +76,8 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   const RoomMeters& meters() const { return meters_; }
   LifeStage stage() const { return shown_stage_; }
   bool locked() const { return shown_locked_; }
-  /// Whether a newcomer may come in; else `why`. It may be over by the time that they do.
-  std::optional<protocol::Refused> closed() const;
+  /// Why this newcomer may not come in, if so. The room may be over by the time that they do.
+  std::optional<protocol::Refused> closed(const Admission& admission) const;
 
  private:
   void open_room();
@@ -86,7 +86,6 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   void arm_at(std::int64_t process_ns);
   void settle(std::int64_t now_ns);
   void end(const std::string& reason);
-  void say_draining(std::int64_t now_ns);
   void wait_for_last();
   void wake_sessions();
   void publish();

@@ -8,7 +8,6 @@
 
 #include "server/host/hosted_room.hpp"
 #include "server/host/process_time.hpp"
-#include "server/host/room_calls.hpp"
 
 // What others ask of a room: each act runs on the room's strand.
 
@@ -17,7 +16,7 @@ namespace {
 
 constexpr int kConflict = 409;
 constexpr int kCannotWrite = 500;
-constexpr int kNotHere = 501;
+constexpr int kNotFound = 404;
 
 void answer(const HostedRoom::Done& done, ActResult result) {
   if (done) done(std::move(result));
@@ -59,16 +58,22 @@ void HostedRoom::act(LifeAct act, std::string reason, std::chrono::milliseconds 
       return answer(done, {kConflict, std::move(why)});
     }
     room.publish_stage();
-    if (act == LifeAct::kPause) room.clock_.pause(now_ns);
-    if (was_paused && act != LifeAct::kLock && act != LifeAct::kUnlock) {
+    room.room_->lock(room.life_.locked());
+    if (act == LifeAct::kPause) {
+      room.clock_.pause(now_ns);
+      room.room_->pause(reason);
+    }
+    if (was_paused && room.life_.stage() != LifeStage::kPaused) {
       room.clock_.resume(now_ns, room.tick_ns());
+      room.room_->resume();
     }
     room.site_.logger->info("room {}: {}{}{}", room.name_, life_act_name(act),
                             reason.empty() ? "" : ": ", reason);
     if (act == LifeAct::kDrain) {
       room.drain_at_ns_ = now_ns + std::chrono::nanoseconds(deadline).count();
       room.drain_reason_ = reason;
-      room.say_draining(now_ns);
+      room.room_->announce_drain(deadline, reason);
+      room.wake_sessions();
     }
     if (act == LifeAct::kEnd) room.end(reason);
     answer(done, {});
@@ -76,20 +81,6 @@ void HostedRoom::act(LifeAct act, std::string reason, std::chrono::milliseconds 
     if (act == LifeAct::kEnd) room.wait_for_last();
   };
   asio::post(strand_, std::move(work));
-}
-
-void HostedRoom::say_draining(std::int64_t now_ns) {
-  protocol::RoomNotice notice;
-  notice.kind = protocol::NoticeKind::kDraining;
-  notice.tick = room_->tick();
-  notice.value =
-      static_cast<std::uint64_t>(std::max<std::int64_t>(drain_at_ns_ - now_ns, 0)) / 1'000'000;
-  notice.text = drain_reason_;
-  const auto message =
-      std::make_shared<const protocol::Bytes>(protocol::encode(protocol::ServerMessage(notice)));
-  for (const auto& weak : sessions_) {
-    if (const auto session = weak.lock()) session->say(message);
-  }
 }
 
 void HostedRoom::ask(Done done, std::function<ActResult(Room&)> question) {
@@ -110,16 +101,20 @@ void HostedRoom::kick(std::uint16_t seat, std::string reason, Done done) {
 }
 
 void HostedRoom::rewind(std::uint64_t tick, Done done) {
-  ask(std::move(done), [tick](Room& room) { return rewind_room(room, tick); });
+  ask(std::move(done), [tick](Room& room) {
+    if (room.rewind(tick)) return ActResult{};
+    return ActResult{kConflict, "tick: it is " + std::to_string(tick) + ", of the room's " +
+                                    std::to_string(room.tick()) + ", and is no longer kept"};
+  });
 }
 
 void HostedRoom::rotate_log(Done done) {
-  ask(std::move(done), [](Room& room) { return rotate_room_log(room); });
+  ask(std::move(done), [this](Room&) { return log_->rotate(another_log_path(settings_, name_)); });
 }
 
 void HostedRoom::set_limits(const Limits& limits) {
   ask({}, [limits](Room& room) {
-    limit_room(room, limits);
+    room.set_limits(limits);
     return ActResult{};
   });
 }
@@ -127,10 +122,8 @@ void HostedRoom::set_limits(const Limits& limits) {
 void HostedRoom::write_snapshot(std::string path, Done done) {
   auto work = [self = shared_from_this(), path = std::move(path), done = std::move(done)] {
     if (!self->room_) return answer(done, {kConflict, "the room has ended"});
-    std::vector<std::byte> state = state_of(*self->room_);
-    if (state.empty()) {
-      return answer(done, {kNotHere, "snapshot: rooms of this build do not hand out their state"});
-    }
+    std::vector<std::byte> state;
+    self->room_->encode_state(state);
     // The disk is for another thread; this one makes ticks.
     asio::post(self->site_.slow, [path, done, state = std::move(state)] {
       answer(done, write_new_file(path, state));

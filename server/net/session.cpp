@@ -32,9 +32,7 @@ void Session::start() {
 }
 
 void Session::enter() {
-  const protocol::ClientMessage hello = entrant_.admission.hello;
-  id_ = place_.room.connect();
-  place_.room.receive(id_, protocol::encode(hello));
+  id_ = place_.room.admit(entrant_.admission);
   const protocol::Bytes rest = std::exchange(entrant_.rest, {});
   if (!rest.empty()) place_.room.receive(id_, rest);
   entrant_.admission = {};
@@ -47,11 +45,6 @@ void Session::wake() {
   lingers_ = true;
   linger_.expires_after(kLinger);
   linger_.async_wait([self = shared_from_this()](const asio::error_code&) { self->close(); });
-}
-
-void Session::say(Shared message) {
-  said_ = std::move(message);
-  writer_wake_.cancel();
 }
 
 void Session::close() {
@@ -127,10 +120,8 @@ asio::awaitable<void> Session::write_loop() {
   auto done = asio::redirect_error(asio::use_awaitable, error);
   transport::Stream& stream = *entrant_.stream;
   while (stream.is_open()) {
-    if (place_.room.has_output(id_) || said_) {
+    if (place_.room.has_output(id_)) {
       std::vector<Shared> output = place_.room.take_output(id_);
-      if (said_ && !lingers_) output.push_back(said_);
-      said_.reset();
       co_await write(std::move(output), error);
       if (error) break;
       continue;

@@ -47,8 +47,6 @@ class Session : public std::enable_shared_from_this<Session> {
   void start();
   /// The room was called: it may have output, or want the connection closed.
   void wake();
-  /// Says this once, behind what the room has said so far. It is not counted in the room's bounds.
-  void say(Shared message);
   void close();
 
  private:
@@ -65,7 +63,6 @@ class Session : public std::enable_shared_from_this<Session> {
   asio::steady_timer writer_wake_;
   asio::steady_timer linger_;         ///< Bounds the end of a connection.
   std::vector<std::byte> tls_bytes_;  ///< Read through TLS; empty over TCP alone.
-  Shared said_;                       ///< By `say`, and not yet written.
   bool lingers_ = false;
   bool reader_done_ = false;
   bool last_word_said_ = false;

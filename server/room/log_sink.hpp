@@ -1,5 +1,8 @@
 #pragma once
 
+#include <cstddef>
+#include <cstdint>
+#include <span>
 #include <string>
 
 #include "protocol/log_format.hpp"
@@ -12,6 +15,19 @@ class LogSink {
   virtual ~LogSink() = default;
   virtual void tick(const protocol::LogTick& tick) = 0;
   virtual void close(const protocol::LogFooter& footer) = 0;
+  /// Whether `keyframe` is to follow this tick.
+  virtual bool wants_keyframe(std::uint64_t tick) const {
+    (void)tick;
+    return false;
+  }
+  /// The exact state after the last tick that was handed over.
+  virtual void keyframe(std::uint64_t tick, std::uint64_t digest,
+                        std::span<const std::byte> state) {
+    (void)tick, (void)digest, (void)state;
+  }
+  /// The match goes on from after this earlier tick, whose digest this is: the next tick to be
+  /// handed over is tick + 1, and those after it that were handed over before are another branch.
+  virtual void branch(std::uint64_t tick, std::uint64_t digest) { (void)tick, (void)digest; }
   /// False once a tick could not be kept; never true again.
   virtual bool durable() const = 0;
   virtual std::string error() const = 0;

@@ -3,22 +3,57 @@
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
+#include <string>
+
+#include "server/room/policy.hpp"
 
 namespace cycloid::server {
 
 /// What one room and its peers may use up; docs/protocol.md says what happens at each bound.
-/// None may be 0.
+/// None may be 0 unless its comment says so.
 struct Limits {
   std::size_t connections_max = 1024;
-  std::uint32_t messages_per_tick_max =
-      64;  ///< Of one client; what is more waits for the next tick.
-  std::size_t queue_bytes_max = std::size_t{1} << 20;  ///< Of one client, snapshots not counted.
+  /// Of one client; what is more waits for the next tick.
+  std::uint32_t messages_per_tick_max = 64;
+  std::size_t queue_bytes_max = std::size_t{1} << 20;  ///< Of one client, states not counted.
   std::chrono::nanoseconds handshake{std::chrono::seconds{5}};  ///< From connection to hello.
   std::chrono::nanoseconds idle{std::chrono::seconds{30}};      ///< Without any message.
   std::uint32_t catch_up_ticks_max = 8;  ///< In one `advance`; a room further behind is slowed.
   std::uint64_t digest_ticks = 60;       ///< Ticks between two digests to lockstep clients.
   std::uint64_t snapshot_ticks = 3;      ///< Ticks between two snapshots to snapshot clients.
-  std::uint32_t input_delay_ticks = 2;   ///< The lead that clients are told to keep.
+  std::uint32_t input_delay_ticks = 2;   ///< The lead that clients are told to keep at first.
+
+  std::chrono::nanoseconds queue_age{std::chrono::seconds{2}};  ///< Of the oldest waiting frame.
+  std::uint32_t state_parts_per_tick_max = 8;                   ///< Of 16 KiB, to one client.
+  std::uint32_t state_restarts_max = 3;  ///< Of one transfer to a client that lags behind.
+  std::uint32_t resyncs_max = 3;         ///< Of one client within `resync_window`.
+  std::chrono::nanoseconds resync_window{std::chrono::minutes{5}};
+  std::uint32_t words_per_input_max = 8;  ///< Inputs that one client may say for the same tick.
+  std::uint64_t messages_per_s = 1200;    ///< Of one client, twice as many at once.
+  std::uint64_t bytes_per_s = 262144;     ///< Likewise.
+
+  std::chrono::nanoseconds resume{std::chrono::seconds{10}};  ///< 0: a lost seat is free at once.
+  std::uint32_t slow_ticks_max = 120;  ///< Inputs missed in a row before `RoomOptions::slow`.
+
+  std::size_t frames_kept_max = 3600;
+  std::uint64_t keyframe_ticks = 60;
+  std::size_t keyframe_bytes_max = std::size_t{8} << 20;
+  std::size_t baseline_bytes_max = std::size_t{4}
+                                   << 20;  ///< Of all states that may be differed from.
+};
+
+struct RoomOptions {
+  Limits limits;
+  std::uint64_t scene_digest = 0;
+  std::uint32_t tick_rate_millihertz = 60000;  ///< @pre > 0.
+  std::uint64_t ticks = 0;                     ///< End after so many; 0: never.
+  bool stop_on_log_error = false;
+  std::string name;   ///< "": answers to every room name.
+  std::string build;  ///< The server's compiler and flags, for a desync report.
+  InputPolicy policy;
+  SlowPeer slow = SlowPeer::kReplace;
+  DelayPolicy delay;
+  std::uint64_t spectator_delay_ticks = 0;  ///< Admins see the match as it is.
 };
 
 }  // namespace cycloid::server

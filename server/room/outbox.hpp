@@ -1,63 +1,67 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
+#include <deque>
 #include <memory>
+#include <optional>
 #include <utility>
 #include <vector>
 
-#include "protocol/codec.hpp"
+#include "server/room/exact_states.hpp"
 
 namespace cycloid::server {
 
-/// Encoded once, sent to many.
-using Shared = std::shared_ptr<const protocol::Bytes>;
-
 /// What waits to be sent to one client: bounded, whatever the client does.
 ///
-/// Frames and answers queue up to a bound. Exact snapshots (of a join or after a desync) are not
-/// counted, for one may be larger than the bound; `exact_waits` lets the room queue one at a time.
-/// Of the snapshots of a snapshot client only the latest waits.
+/// Frames and control messages queue up to a bound of bytes; frames may be dropped all together,
+/// where an exact state is to take their place. That state is handed out in parts, between which
+/// frames of later ticks go on. Of the snapshots of a snapshot client only the latest waits.
 class Outbox {
  public:
   explicit Outbox(std::size_t bytes_max) : bytes_max_(bytes_max) {}
 
   /// False, and nothing has changed, where it would be over the bound.
-  [[nodiscard]] bool push(Shared bytes) {
-    if (bytes_ + bytes->size() > bytes_max_) return false;
-    bytes_ += bytes->size();
-    queue_.push_back(std::move(bytes));
-    return true;
+  [[nodiscard]] bool push_frame(Shared bytes, std::int64_t now_ns) {
+    return push({std::move(bytes), now_ns, true});
   }
-  void push_exact(Shared snapshot) {
-    queue_.push_back(std::move(snapshot));
-    exact_waits_ = true;
+  [[nodiscard]] bool push_control(Shared bytes, std::int64_t now_ns) {
+    return push({std::move(bytes), now_ns, false});
   }
   /// The last word, which has room whatever waits, and comes after all of it.
-  void push_last(Shared bytes) {
-    if (snapshot_) queue_.push_back(std::exchange(snapshot_, nullptr));
-    queue_.push_back(std::move(bytes));
-  }
+  void push_last(Shared bytes);
   void replace_snapshot(Shared snapshot) { snapshot_ = std::move(snapshot); }
 
-  bool exact_waits() const { return exact_waits_; }
-  bool empty() const { return queue_.empty() && !snapshot_; }
-  void clear() { (void)take(); }
+  /// Frames of ticks up to the state's are dropped: it takes their place.
+  void begin_state(std::shared_ptr<const ExactState> state);
+  bool state_waits() const { return state_ != nullptr; }
+  /// No part of a state has left, and none is due before the next `take`.
+  bool state_untouched() const { return state_ == nullptr || next_part_ == 0; }
+  void drop_frames_and_state();
+  void clear();
 
-  /// All that waits, in order.
-  std::vector<Shared> take() {
-    if (snapshot_) queue_.push_back(std::move(snapshot_));
-    snapshot_.reset();
-    bytes_ = 0;
-    exact_waits_ = false;
-    return std::exchange(queue_, {});
-  }
+  std::size_t bytes() const { return bytes_; }
+  std::optional<std::int64_t> oldest_frame_ns() const;
+  /// Whether `take` with such a number of parts would give anything.
+  bool has_output(std::uint32_t parts_max) const;
+  /// All that waits, in order, and of the state the next parts, whose number is taken off.
+  std::vector<Shared> take(std::uint32_t& parts_max);
 
  private:
+  struct Item {
+    Shared bytes;
+    std::int64_t queued_ns = 0;
+    bool is_frame = false;
+  };
+  bool push(Item item);
+
   std::size_t bytes_max_;
   std::size_t bytes_ = 0;
-  std::vector<Shared> queue_;
+  std::deque<Item> queue_;
+  std::size_t before_state_ = 0;  ///< Of the queue: was said before the state was begun.
+  std::shared_ptr<const ExactState> state_;
+  std::size_t next_part_ = 0;
   Shared snapshot_;
-  bool exact_waits_ = false;
 };
 
 }  // namespace cycloid::server

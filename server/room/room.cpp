@@ -1,36 +1,56 @@
 #include "server/room/room.hpp"
 
+#include <algorithm>
+#include <limits>
 #include <utility>
 
 namespace cycloid::server {
-
 namespace {
 
-/// Names come from outside: nothing in them may look like another line.
-std::string printable(const std::string& name) {
-  std::string text = name;
-  for (char& c : text) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return text;
+/// A delayed spectator is served from the ring, from the keyframe before what it may see.
+std::size_t frames_kept(const RoomOptions& options) {
+  const std::uint64_t needed = options.spectator_delay_ticks + 2 * options.limits.keyframe_ticks;
+  return std::max<std::size_t>(options.limits.frames_kept_max, needed);
+}
+
+/// For how long a client may acknowledge a snapshot.
+std::uint64_t ticks_of_3_s(std::uint32_t rate_millihertz) {
+  return 3ull * rate_millihertz / 1000 + 1;
 }
 
 }  // namespace
+
+std::string printable(const std::string& text) {
+  std::string line = text;
+  for (char& c : line) {
+    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
+  }
+  return line;
+}
 
 Room::Room(RoomOptions options, scenes::Simulation simulation, RoomHooks hooks)
     : options_(std::move(options)),
       simulation_(std::move(simulation)),
       hooks_(std::move(hooks)),
-      schedule_(hooks_.now_ns(), options_.tick_rate_millihertz),
+      digest_(simulation_.digest()),
+      highest_tick_(simulation_.tick()),
+      pacer_(hooks_.now_ns(), options_.tick_rate_millihertz),
       seats_(static_cast<std::size_t>(simulation_.seats())),
-      digest_(simulation_.digest()) {}
+      tokens_(seats_.size()),
+      delay_(options_.delay, options_.limits.input_delay_ticks, options_.tick_rate_millihertz),
+      frames_(frames_kept(options_)),
+      keyframes_(options_.limits.keyframe_bytes_max),
+      feed_(hooks_.coder == nullptr ? full_coder_ : *hooks_.coder,
+            options_.limits.baseline_bytes_max, ticks_of_3_s(options_.tick_rate_millihertz)) {
+  keyframes_.push(states_.of(simulation_, digest_), 0);
+}
 
 PeerId Room::connect() {
   std::size_t connections = 0;
-  for (const auto& [id, peer] : peers_) connections += peer.stage == Stage::kClosing ? 0 : 1;
+  for (const auto& [id, peer] : peers_) connections += peer.stage == PeerStage::kClosing ? 0 : 1;
 
   const PeerId id = ++last_id_;
-  Peer& peer = peers_.emplace(id, Peer(options_.limits.queue_bytes_max)).first->second;
+  Peer& peer = peers_.emplace(id, Peer(options_.limits)).first->second;
   peer.connected_ns = peer.heard_ns = hooks_.now_ns();
   if (state_ == RoomState::kFaulted) {
     refuse(id, peer, protocol::Refusal::kFaulted, end_reason_);
@@ -44,10 +64,19 @@ PeerId Room::connect() {
   return id;
 }
 
+PeerId Room::admit(const Admission& admission) {
+  const PeerId id = connect();
+  Peer& peer = peers_.find(id)->second;
+  if (peer.stage == PeerStage::kGreeting) greet(id, peer, admission);
+  return id;
+}
+
 void Room::disconnect(PeerId id) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
-  if (found->second.stage == Stage::kPlaying) leave(id, found->second, "disconnected");
+  if (found->second.playing()) {
+    leave(id, found->second, "disconnected", protocol::EventKind::kLost);
+  }
   peers_.erase(found);
 }
 
@@ -55,25 +84,32 @@ bool Room::wants_bytes(PeerId id) const {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return false;
   const Peer& peer = found->second;
-  return peer.stage == Stage::kClosing || peer.messages < options_.limits.messages_per_tick_max;
+  return peer.stage == PeerStage::kClosing || peer.messages < options_.limits.messages_per_tick_max;
 }
 
 bool Room::has_output(PeerId id) const {
   const auto found = peers_.find(id);
-  return found != peers_.end() && !found->second.outbox.empty();
+  if (found == peers_.end()) return false;
+  const Peer& peer = found->second;
+  if (peer.outbox.has_output(peer.parts_left)) return true;
+  if (!peer.state_due || !peer.playing()) return false;
+  return peer.delay_ticks == 0 || keyframes_.at_or_before(visible_tick(peer)) != nullptr;
 }
 
 std::vector<Shared> Room::take_output(PeerId id) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return {};
-  std::vector<Shared> output = found->second.outbox.take();
+  Peer& peer = found->second;
+  if (peer.state_due && peer.playing()) begin_state(id, peer);
+  std::vector<Shared> output = peer.outbox.take(peer.parts_left);
+  if (!peer.outbox.state_waits()) peer.state_restarts = 0;
   for (const Shared& bytes : output) statistics_.bytes_out += bytes->size();
   return output;
 }
 
 bool Room::wants_close(PeerId id) const {
   const auto found = peers_.find(id);
-  return found == peers_.end() || found->second.stage == Stage::kClosing;
+  return found == peers_.end() || found->second.stage == PeerStage::kClosing;
 }
 
 void Room::drain(const std::string& reason) {
@@ -84,26 +120,31 @@ void Room::close_overdue() {
   const std::int64_t now = hooks_.now_ns();
   const Limits& limits = options_.limits;
   for (auto& [id, peer] : peers_) {
-    const bool greets = peer.stage == Stage::kGreeting;
+    const bool greets = peer.stage == PeerStage::kGreeting;
     const std::int64_t waited = now - (greets ? peer.connected_ns : peer.heard_ns);
     const std::int64_t most = (greets ? limits.handshake : limits.idle).count();
-    if (peer.stage == Stage::kClosing || waited < most) continue;
+    if (peer.stage == PeerStage::kClosing || waited < most) continue;
     const std::string what = greets ? "no hello for " : "no message for ";
     refuse(id, peer, protocol::Refusal::kTooSlow,
            what + std::to_string(waited / 1'000'000) + " ms, of at most " +
-               std::to_string(most / 1'000'000) + " ms");
+               std::to_string(most / 1'000'000) + " ms",
+           protocol::EventKind::kLost);
   }
 }
 
-void Room::refuse(PeerId id, Peer& peer, protocol::Refusal code, const std::string& reason) {
-  if (peer.stage == Stage::kClosing) return;
+void Room::refuse(PeerId id, Peer& peer, protocol::Refusal code, const std::string& reason,
+                  protocol::EventKind seat_event) {
+  if (peer.stage == PeerStage::kClosing) return;
   ++statistics_.refusals;
+  ++statistics_.refusals_by_code[static_cast<std::size_t>(code)];
   notice(Notice::Kind::kRefusal, "client " + std::to_string(id) + " \"" + printable(peer.name) +
-                                     "\" refused: " + refusal_name(code) + ": " + reason);
-  vacate(peer);
-  peer.stage = Stage::kClosing;
+                                     "\" refused: " + refusal_name(code) + ": " +
+                                     printable(reason));
+  give_up_seat(peer, seat_event);
+  if (peer.playing() && hooks_.inquiry != nullptr) hooks_.inquiry->on_gone(id);
+  peer.stage = PeerStage::kClosing;
   // What it could not take before it need not take now: its last word is why.
-  if (code == protocol::Refusal::kTooSlow) peer.outbox.clear();
+  if (code == protocol::Refusal::kTooSlow || peer.outbox.state_waits()) peer.outbox.clear();
   peer.outbox.push_last(std::make_shared<const protocol::Bytes>(
       protocol::encode(protocol::ServerMessage(protocol::Refused{code, reason}))));
 }
@@ -118,98 +159,67 @@ void Room::end(RoomState state, const std::string& reason) {
   const auto bye = std::make_shared<const protocol::Bytes>(
       protocol::encode(protocol::ServerMessage(protocol::Bye{reason})));
   for (auto& [id, peer] : peers_) {
-    if (peer.stage == Stage::kClosing) continue;
+    if (peer.stage == PeerStage::kClosing) continue;
     if (state == RoomState::kFaulted) {
       refuse(id, peer, protocol::Refusal::kFaulted, reason);
-    } else if (peer.stage == Stage::kGreeting) {
+    } else if (peer.stage == PeerStage::kGreeting) {
       refuse(id, peer, protocol::Refusal::kDraining, reason);
     } else {
+      if (peer.state_due) begin_state(id, peer);
       // The last digest, so that a replica knows that it saw the match as it was.
-      if (peer.mode == protocol::Mode::kLockstep && !digest_sent) answer(id, peer, digest);
-      if (peer.stage == Stage::kClosing) continue;
+      const bool sees_the_end = peer.delay_ticks == 0 && peer.playing();
+      const bool lockstep = peer.mode == protocol::Mode::kLockstep;
+      if (sees_the_end && lockstep && !digest_sent) answer(id, peer, digest);
+      if (peer.stage == PeerStage::kClosing) continue;
       // And the last state, whichever tick the match ends at.
-      if (peer.mode == protocol::Mode::kSnapshot) peer.outbox.replace_snapshot(exact_snapshot());
+      if (sees_the_end && !lockstep) send_snapshot(peer);
       peer.outbox.push_last(bye);
-      peer.stage = Stage::kClosing;
+      peer.parts_left = std::numeric_limits<std::uint32_t>::max();
+      peer.stage = PeerStage::kClosing;
     }
   }
   notice(Notice::Kind::kEnd,
-         "closed at tick " + std::to_string(simulation_.tick()) + ": " + reason);
+         "closed at tick " + std::to_string(simulation_.tick()) + ": " + printable(reason));
 }
 
-void Room::vacate(Peer& peer) {
+void Room::give_up_seat(Peer& peer, protocol::EventKind event) {
   if (peer.seat < 0) return;
-  const auto seat = static_cast<std::uint16_t>(peer.seat);
-  seats_[seat].free();
-  events_.push_back({protocol::EventKind::kLeave, seat});
+  const auto seat = static_cast<std::size_t>(peer.seat);
+  const std::int64_t resume_ns = options_.limits.resume.count();
+  const bool can_resume = hooks_.random && resume_ns > 0 && state_ == RoomState::kRunning;
+  if (event == protocol::EventKind::kLost && !can_resume) event = protocol::EventKind::kLeave;
+  if (event == protocol::EventKind::kLost) {
+    const std::int64_t ticks = (resume_ns + pacer_.tick_ns() / 2) / pacer_.tick_ns();
+    seats_.lose(seat,
+                simulation_.tick() + static_cast<std::uint64_t>(std::max<std::int64_t>(ticks, 1)));
+  } else {
+    seats_.free(seat);
+    tokens_.forget(seat);
+  }
+  events_.push_back({event, static_cast<std::uint16_t>(seat)});
   peer.seat = protocol::kSpectator;
+  peer.unseated = true;
+  delay_.look_anew();
 }
 
-void Room::leave(PeerId id, Peer& peer, const std::string& why) {
-  vacate(peer);
-  peer.stage = Stage::kClosing;
+void Room::leave(PeerId id, Peer& peer, const std::string& why, protocol::EventKind seat_event) {
+  give_up_seat(peer, seat_event);
+  if (hooks_.inquiry != nullptr) hooks_.inquiry->on_gone(id);
+  peer.stage = PeerStage::kClosing;
   notice(Notice::Kind::kLeave, "client " + std::to_string(id) + " \"" + printable(peer.name) +
                                    "\" left: " + printable(why));
 }
 
 void Room::answer(PeerId id, Peer& peer, const protocol::ServerMessage& message) {
-  if (peer.outbox.push(std::make_shared<const protocol::Bytes>(protocol::encode(message)))) return;
+  auto bytes = std::make_shared<const protocol::Bytes>(protocol::encode(message));
+  if (peer.outbox.push_control(std::move(bytes), hooks_.now_ns())) return;
   refuse(id, peer, protocol::Refusal::kTooSlow,
-         "more than " + std::to_string(options_.limits.queue_bytes_max) + " bytes wait for it");
+         "more than " + std::to_string(options_.limits.queue_bytes_max) + " bytes wait for it",
+         protocol::EventKind::kLost);
 }
 
 void Room::notice(Notice::Kind kind, const std::string& text) const {
   if (hooks_.notice) hooks_.notice({kind, text});
-}
-
-const char* refusal_name(protocol::Refusal code) {
-  switch (code) {
-    case protocol::Refusal::kProtocolVersion:
-      return "kProtocolVersion";
-    case protocol::Refusal::kSolverVersion:
-      return "kSolverVersion";
-    case protocol::Refusal::kSceneDigest:
-      return "kSceneDigest";
-    case protocol::Refusal::kSeatTaken:
-      return "kSeatTaken";
-    case protocol::Refusal::kNoSuchSeat:
-      return "kNoSuchSeat";
-    case protocol::Refusal::kRoomFull:
-      return "kRoomFull";
-    case protocol::Refusal::kBadMessage:
-      return "kBadMessage";
-    case protocol::Refusal::kTooLarge:
-      return "kTooLarge";
-    case protocol::Refusal::kTooSlow:
-      return "kTooSlow";
-    case protocol::Refusal::kDraining:
-      return "kDraining";
-    case protocol::Refusal::kFaulted:
-      return "kFaulted";
-    case protocol::Refusal::kTokenInvalid:
-      return "kTokenInvalid";
-    case protocol::Refusal::kTokenExpired:
-      return "kTokenExpired";
-    case protocol::Refusal::kTokenUsed:
-      return "kTokenUsed";
-    case protocol::Refusal::kTokenScope:
-      return "kTokenScope";
-    case protocol::Refusal::kNoSuchRoom:
-      return "kNoSuchRoom";
-    case protocol::Refusal::kRoomLocked:
-      return "kRoomLocked";
-    case protocol::Refusal::kRateLimited:
-      return "kRateLimited";
-    case protocol::Refusal::kKicked:
-      return "kKicked";
-    case protocol::Refusal::kReplaced:
-      return "kReplaced";
-    case protocol::Refusal::kResumeUnknown:
-      return "kResumeUnknown";
-    case protocol::Refusal::kResyncLimit:
-      return "kResyncLimit";
-  }
-  return "unknown";
 }
 
 }  // namespace cycloid::server

@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
 #include "server/room/room.hpp"
@@ -15,16 +14,6 @@ struct Overloaded : Handlers... {
 template <class... Handlers>
 Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
-std::string hex(std::uint64_t value) {
-  char text[19];
-  (void)std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
-
-std::string differ(const std::string& what, const std::string& theirs, const std::string& ours) {
-  return what + " " + theirs + ", here " + ours;
-}
-
 }  // namespace
 
 void Room::receive(PeerId id, std::span<const std::byte> bytes) {
@@ -32,13 +21,14 @@ void Room::receive(PeerId id, std::span<const std::byte> bytes) {
   if (found == peers_.end()) return;
   statistics_.bytes_in += bytes.size();
   Peer& peer = found->second;
-  if (peer.stage == Stage::kClosing) return;
+  if (peer.stage == PeerStage::kClosing) return;
   (void)peer.framer.feed(bytes);  // `process` asks whether it is broken.
   process(id, peer);
 }
 
 void Room::process(PeerId id, Peer& peer) {
-  while (peer.stage != Stage::kClosing && peer.messages < options_.limits.messages_per_tick_max) {
+  while (peer.stage != PeerStage::kClosing &&
+         peer.messages < options_.limits.messages_per_tick_max) {
     const auto payload = peer.framer.next();
     if (!payload) break;
     ++peer.messages;
@@ -46,142 +36,134 @@ void Room::process(PeerId id, Peer& peer) {
     if (!decoded.message) {
       return refuse(id, peer, protocol::Refusal::kBadMessage, "not a message: " + decoded.error);
     }
+    if (!within_rates(id, peer, payload->size(), *decoded.message)) return;
     peer.heard_ns = hooks_.now_ns();
     take(id, peer, *decoded.message);
   }
-  if (peer.stage == Stage::kClosing || !peer.framer.broken()) return;
-  const bool greets = peer.stage == Stage::kGreeting;
+  if (peer.stage == PeerStage::kClosing || !peer.framer.broken()) return;
+  const bool greets = peer.stage == PeerStage::kGreeting;
   const std::uint32_t most = greets ? protocol::kHelloBytesMax : protocol::kClientMessageBytesMax;
   const std::uint32_t announced = peer.framer.announced_bytes();
   refuse(id, peer, announced == 0 ? protocol::Refusal::kBadMessage : protocol::Refusal::kTooLarge,
          "a message of " + std::to_string(announced) + " bytes, of 1 to " + std::to_string(most));
 }
 
+bool Room::within_rates(PeerId id, Peer& peer, std::size_t bytes,
+                        const protocol::ClientMessage& said) {
+  // What the room has asked for is not held against the client.
+  if (std::holds_alternative<protocol::StatePart>(said) && bytes <= peer.free_bytes) {
+    peer.free_bytes -= bytes;
+    return true;
+  }
+  const std::int64_t now = hooks_.now_ns();
+  const Limits& limits = options_.limits;
+  if (!peer.messages_rate.take(now, 1)) {
+    refuse(id, peer, protocol::Refusal::kRateLimited,
+           "more than " + std::to_string(limits.messages_per_s) + " messages a second");
+  } else if (!peer.bytes_rate.take(now, bytes)) {
+    refuse(id, peer, protocol::Refusal::kRateLimited,
+           "more than " + std::to_string(limits.bytes_per_s) + " bytes a second");
+  } else {
+    return true;
+  }
+  return false;
+}
+
 void Room::take(PeerId id, Peer& peer, const protocol::ClientMessage& message) {
   const bool is_hello = std::holds_alternative<protocol::Hello>(message);
-  if (is_hello != (peer.stage == Stage::kGreeting)) {
+  if (is_hello != (peer.stage == PeerStage::kGreeting)) {
     return refuse(id, peer, protocol::Refusal::kBadMessage,
                   is_hello ? "a second hello" : "the first message is not a hello");
   }
   const auto handler = Overloaded{
-      [&](const protocol::Hello& hello) { on_hello(id, peer, hello); },
+      [&](const protocol::Hello& hello) {
+        Admission admission;
+        admission.hello = hello;
+        greet(id, peer, admission);
+      },
       [&](const protocol::Input& input) { on_input(id, peer, input); },
       [&](const protocol::Digest& digest) { on_digest(id, peer, digest); },
       [&](const protocol::Ping& ping) {
-        answer(id, peer, protocol::Pong{ping.token, simulation_.tick()});
+        answer(id, peer, protocol::Pong{ping.token, visible_tick(peer)});
       },
-      [&](const protocol::Bye& bye) { leave(id, peer, "bye: " + bye.reason); },
-      [](const auto&) {},
+      [&](const protocol::Bye& bye) {
+        leave(id, peer, "bye: " + bye.reason, protocol::EventKind::kLeave);
+      },
+      [&](const protocol::Ack& ack) { on_ack(id, peer, ack); },
+      [&](const protocol::TickDigests& digests) { on_tick_digests(id, peer, digests); },
+      [&](const protocol::StatePart& part) { on_state_part(id, peer, part); },
   };
   std::visit(handler, message);
 }
 
-void Room::on_hello(PeerId id, Peer& peer, const protocol::Hello& hello) {
-  peer.name = hello.name;
-  if (hello.protocol_version != protocol::kProtocolVersion) {
-    return refuse(id, peer, protocol::Refusal::kProtocolVersion,
-                  differ("protocol version", std::to_string(hello.protocol_version),
-                         std::to_string(protocol::kProtocolVersion)));
-  }
-  if (hello.solver_version != solver::kSolverVersion) {
-    return refuse(id, peer, protocol::Refusal::kSolverVersion,
-                  differ("solver version", std::to_string(hello.solver_version),
-                         std::to_string(solver::kSolverVersion)));
-  }
-  if (hello.scene_digest != options_.scene_digest) {
-    return refuse(id, peer, protocol::Refusal::kSceneDigest,
-                  differ("scene digest", hex(hello.scene_digest), hex(options_.scene_digest)));
-  }
-  if (!find_seat(id, peer, hello.seat_wish)) return;
-
-  peer.stage = Stage::kPlaying;
-  peer.mode = hello.mode;
-  peer.framer.set_limit(protocol::kClientMessageBytesMax);
-  peer.exact_tick = simulation_.tick();
-  ++statistics_.clients;
-  notice(Notice::Kind::kJoin,
-         "client " + std::to_string(id) + " joined at tick " + std::to_string(simulation_.tick()) +
-             (peer.seat < 0 ? " as spectator" : " in seat " + std::to_string(peer.seat)));
-  answer(id, peer,
-         protocol::Welcome{peer.seat, static_cast<std::uint32_t>(seats_.size()), simulation_.tick(),
-                           options_.tick_rate_millihertz, options_.limits.input_delay_ticks});
-  if (peer.stage == Stage::kPlaying) peer.outbox.push_exact(exact_snapshot());
-}
-
-bool Room::find_seat(PeerId id, Peer& peer, std::int32_t wish) {
-  // A scene without seats has nothing but spectators.
-  if (wish == protocol::kSpectator || (wish == protocol::kAnySeat && seats_.empty())) return true;
-
-  const std::string seats = std::to_string(seats_.size());
-  // Every event of a leave has room, for at most kSeatsMax seats can be left before the next frame.
-  if (events_.size() + scenes::kSeatsMax >= protocol::kFrameEventsMax) {
-    refuse(id, peer, protocol::Refusal::kRoomFull,
-           std::to_string(events_.size()) + " joins and leaves in one tick, of at most " +
-               std::to_string(protocol::kFrameEventsMax - scenes::kSeatsMax));
-    return false;
-  }
-  const auto free = [](const Seat& seat) { return seat.holder() == kNobody; };
-  auto index = static_cast<std::size_t>(wish);
-  if (wish == protocol::kAnySeat) {
-    index = static_cast<std::size_t>(std::ranges::find_if(seats_, free) - seats_.begin());
-    if (index == seats_.size()) {
-      refuse(id, peer, protocol::Refusal::kRoomFull, seats + " seats taken, of " + seats);
-      return false;
-    }
-  } else if (index >= seats_.size()) {
-    refuse(id, peer, protocol::Refusal::kNoSuchSeat,
-           "seat " + std::to_string(wish) + ", here are " + seats + " seats from 0");
-    return false;
-  } else if (!free(seats_[index])) {
-    refuse(id, peer, protocol::Refusal::kSeatTaken,
-           "seat " + std::to_string(wish) + " is held by client " +
-               std::to_string(seats_[index].holder()));
-    return false;
-  }
-  seats_[index].hand_to(id);
-  peer.seat = static_cast<std::int32_t>(index);
-  events_.push_back({protocol::EventKind::kJoin, static_cast<std::uint16_t>(index)});
-  return true;
-}
-
 void Room::on_input(PeerId id, Peer& peer, const protocol::Input& input) {
+  const std::uint64_t made = simulation_.tick();
   if (peer.seat < 0) {
-    return refuse(id, peer, protocol::Refusal::kBadMessage, "an input of a spectator");
+    if (!peer.unseated) {
+      return refuse(id, peer, protocol::Refusal::kBadMessage, "an input of a spectator");
+    }
+    ++statistics_.inputs_late;
+    return;
   }
-  switch (protocol::timing(simulation_.tick(), input.tick)) {
-    case protocol::Timing::kLate:
+  prove_secret(peer);
+  SeatHold& hold = seats_[static_cast<std::size_t>(peer.seat)];
+  switch (protocol::timing(made, input.tick)) {
+    case protocol::Timing::kLate: {
       ++statistics_.inputs_late;
+      const std::uint64_t late = made + 1 - input.tick;
+      if (late > protocol::kInputWindowTicks) return;  // Of another time, and nothing to steer by.
+      hold.margin.on_input(-static_cast<std::int32_t>(late), false);
+      inputs_.late_ticks = std::max(inputs_.late_ticks, static_cast<std::uint32_t>(late));
       return;
+    }
     case protocol::Timing::kEarly:
       ++statistics_.inputs_early;
       return;
     case protocol::Timing::kInTime:
       break;
   }
-  seats_[static_cast<std::size_t>(peer.seat)].say(input.tick, input.input);
+  const std::uint32_t words = hold.window.say(made, input.tick, input.input);
+  if (words > options_.limits.words_per_input_max) {
+    return refuse(id, peer, protocol::Refusal::kRateLimited,
+                  std::to_string(words) + " inputs for tick " + std::to_string(input.tick) +
+                      ", of at most " + std::to_string(options_.limits.words_per_input_max));
+  }
+  auto early = static_cast<std::int32_t>(input.tick - made - 1);
+  if (pacer_.waiting() && early == 0) {  // In time only because the tick has waited.
+    const std::int64_t over_ns = hooks_.now_ns() - pacer_.due_ns(input.tick);
+    early = -1 - static_cast<std::int32_t>(over_ns / pacer_.tick_ns());
+    inputs_.late_ticks = std::max(inputs_.late_ticks, static_cast<std::uint32_t>(-early));
+  }
+  hold.margin.on_input(early, true);
 }
 
-void Room::on_digest(PeerId id, Peer& peer, const protocol::Digest& digest) {
-  if (digest.tick > simulation_.tick()) {
+void Room::on_ack(PeerId id, Peer& peer, const protocol::Ack& ack) {
+  if (ack.tick > std::max(visible_tick(peer), highest_tick_)) {
     return refuse(id, peer, protocol::Refusal::kBadMessage,
-                  "a digest of tick " + std::to_string(digest.tick) + ", the last made is " +
-                      std::to_string(simulation_.tick()));
+                  "an acknowledgement of tick " + std::to_string(ack.tick) + ", the last made is " +
+                      std::to_string(visible_tick(peer)));
   }
-  if (peer.mode != protocol::Mode::kLockstep || digest.tick <= peer.exact_tick) return;
-  const auto mine = std::ranges::find(digests_, digest.tick, &DigestAt::tick);
-  if (mine == digests_.end() || mine->digest == digest.digest) return;
+  if (peer.mode == protocol::Mode::kSnapshot) {
+    if (ack.tick <= simulation_.tick()) peer.acked_tick = std::max(peer.acked_tick, ack.tick);
+    return;
+  }
+  // Of a client that came back with its state: the frames since are enough, if they are kept.
+  const bool waits = peer.resumed && peer.welcome_due && peer.state_due;
+  const std::uint64_t made = visible_tick(peer);
+  if (!waits || ack.tick > made) return;
+  if (ack.tick < made && frames_.find(ack.tick + 1) == nullptr) return;
+  peer.state_due = false;
+  peer.exact_tick = ack.tick;
+  peer.next_frame = ack.tick + 1;
+  say_welcome(id, peer, ack.tick);
+  if (peer.playing()) send_frames(id, peer);
+}
 
-  ++statistics_.desyncs;
-  if (!std::exchange(peer.desync_noticed, true)) {
-    notice(Notice::Kind::kDesync, "client " + std::to_string(id) + " desynced by tick " +
-                                      std::to_string(digest.tick) + ": " +
-                                      differ("digest", hex(digest.digest), hex(mine->digest)));
-  }
-  if (peer.outbox.exact_waits()) {
-    return refuse(id, peer, protocol::Refusal::kTooSlow, "a second snapshot waits for it");
-  }
-  peer.exact_tick = simulation_.tick();
-  peer.outbox.push_exact(exact_snapshot());
+void Room::prove_secret(Peer& peer) {
+  // Before its welcome has left it cannot have the secret that is in it.
+  if (peer.secret_proved || peer.welcome_due) return;
+  peer.secret_proved = true;
+  tokens_.confirm(static_cast<std::size_t>(peer.seat));
 }
 
 }  // namespace cycloid::server

@@ -71,37 +71,6 @@ TEST_F(RoomBounds, CatchingUpIsBoundedInTime) {
   EXPECT_GE(room_->statistics().worst_tick_ns, static_cast<std::uint64_t>(3 * kTickNs));
 }
 
-TEST_F(RoomBounds, ASlowReaderIsClosedAndTheOthersHearAll) {
-  Limits limits;
-  limits.queue_bytes_max = 4096;
-  open(limits);
-  const PeerId good = join(0);
-  const PeerId slow = join(1);
-  std::size_t frames = 0;
-  for (int tick = 0; tick < 200; ++tick) {
-    say(good, protocol::Ping{1});
-    run(1);
-    frames += only<protocol::InputFrame>(hear(good)).size();
-  }
-  EXPECT_EQ(frames, 200u);
-  EXPECT_FALSE(room_->wants_close(good));
-  const auto last = hear(slow);
-  ASSERT_EQ(last.size(), 1u) << "what it did not take is gone; its last word is why";
-  EXPECT_EQ(std::get<protocol::Refused>(last[0]).code, Refusal::kTooSlow);
-  EXPECT_EQ(std::get<protocol::Refused>(last[0]).reason, "more than 4096 bytes wait for it");
-  EXPECT_TRUE(room_->wants_close(slow));
-}
-
-TEST_F(RoomBounds, ASnapshotClientThatReadsNothingHoldsOneSnapshot) {
-  Limits limits;
-  limits.queue_bytes_max = 4096;
-  open(limits);
-  const PeerId id = join(0, protocol::Mode::kSnapshot);
-  run(600);
-  EXPECT_FALSE(room_->wants_close(id));
-  EXPECT_EQ(room_->take_output(id).size(), 3u);  // Welcome, its snapshot, and the latest.
-}
-
 TEST_F(RoomBounds, WhatIsMoreThanATickHoldsWaitsForTheNext) {
   Limits limits;
   limits.messages_per_tick_max = 4;
@@ -140,45 +109,6 @@ TEST_F(RoomBounds, JoinsOfOneTickAreBoundedAndEveryLeaveHasRoom) {
   EXPECT_FALSE(room_->wants_close(join(0)));
 }
 
-TEST_F(RoomBounds, ADesyncIsAnsweredWithTheExactState) {
-  open();
-  const PeerId bad = join(0);
-  const PeerId good = join(1);
-  run(65);
-  (void)hear(bad);
-  (void)hear(good);
-  say(good, protocol::Digest{60, log_.ticks[59].digest});
-  EXPECT_FALSE(room_->has_output(good));
-  say(bad, protocol::Digest{60, 0xbad});
-  const auto answer = only<protocol::Snapshot>(hear(bad));
-  ASSERT_EQ(answer.size(), 1u);
-  EXPECT_EQ(answer[0].tick, 65u);
-  EXPECT_EQ(answer[0].digest, room_->digest());
-  EXPECT_EQ(room_->statistics().desyncs, 1u);
-
-  say(bad, protocol::Digest{60, 0xbad});  // Said before it could have the snapshot.
-  EXPECT_FALSE(room_->has_output(bad));
-  Mirror mirror{simulation_of(scene_), {}, {}};
-  mirror.take({answer[0]});
-  run(60);
-  mirror.take(hear(bad));
-  EXPECT_EQ(mirror.simulation.digest(), room_->digest());
-
-  say(bad, protocol::Digest{120, 0xbad});
-  EXPECT_EQ(only<protocol::Snapshot>(hear(bad)).size(), 1u);
-  EXPECT_EQ(room_->statistics().desyncs, 2u);
-  EXPECT_EQ(count(Notice::Kind::kDesync), 1) << "said once, counted always";
-  EXPECT_FALSE(room_->wants_close(bad));
-}
-
-TEST_F(RoomBounds, SnapshotsForDesyncsAreBounded) {
-  open();
-  const PeerId id = join(0);
-  run(60);
-  say(id, protocol::Digest{60, 0xbad});
-  EXPECT_EQ(refusal(id).code, Refusal::kTooSlow) << "that of its join still waits";
-}
-
 TEST_F(RoomBounds, DrainingTellsAllAndClosesTheLog) {
   open();
   const PeerId player = join(0);
@@ -206,7 +136,7 @@ TEST_F(RoomBounds, DrainingTellsAllAndClosesTheLog) {
 
 TEST_F(RoomBounds, TheWantedTicksAreTheEnd) {
   open({}, 20);
-  const PeerId id = join(0);
+  const PeerId id = enter(0);
   now_ += 100 * kTickNs;
   for (int i = 0; i < 10; ++i) {
     room_->advance();

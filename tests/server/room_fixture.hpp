@@ -7,6 +7,7 @@
 #include <functional>
 #include <map>
 #include <optional>
+#include <span>
 #include <string>
 #include <utility>
 #include <variant>
@@ -68,12 +69,25 @@ class MemoryLog final : public LogSink {
     if (durable_) ticks.push_back(tick);
   }
   void close(const protocol::LogFooter& at_end) override { footer = at_end; }
+  bool wants_keyframe(std::uint64_t tick) const override {
+    return keyframe_ticks != 0 && tick % keyframe_ticks == 0;
+  }
+  void keyframe(std::uint64_t tick, std::uint64_t digest,
+                std::span<const std::byte> state) override {
+    keyframes.push_back({tick, digest, {state.begin(), state.end()}});
+  }
+  void branch(std::uint64_t tick, std::uint64_t digest) override {
+    branches.push_back({tick, digest});
+  }
   bool durable() const override { return durable_; }
   std::string error() const override { return "the disk is gone"; }
   void break_down() { durable_ = false; }
 
   std::function<void()> on_tick;
+  std::uint64_t keyframe_ticks = 0;  ///< 0: wants none.
   std::vector<protocol::LogTick> ticks;
+  std::vector<protocol::Snapshot> keyframes;
+  std::vector<protocol::Digest> branches;
   std::optional<protocol::LogFooter> footer;
 
  private:
@@ -86,17 +100,31 @@ class RoomTest : public testing::Test {
   static constexpr std::int64_t kTickNs = 16'666'667;
 
   void open(Limits limits = {}, std::uint64_t ticks = 0, scenes::Scene scene = two_seat_scene()) {
-    scene_ = std::move(scene);
     RoomOptions options;
     options.limits = limits;
-    options.scene_digest = scenes::scene_digest(scene_);
     options.ticks = ticks;
     options.stop_on_log_error = stop_on_log_error_;
+    open_with(std::move(options), std::move(scene));
+  }
+
+  void open_with(RoomOptions options, scenes::Scene scene = two_seat_scene()) {
+    scene_ = std::move(scene);
+    options.scene_digest = scenes::scene_digest(scene_);
     RoomHooks hooks;
     hooks.now_ns = [this] { return now_; };
     hooks.notice = [this](const Notice& notice) { notices_.push_back(notice); };
     hooks.log = &log_;
-    room_.emplace(options, simulation_of(scene_), hooks);
+    hooks.inquiry = inquiry_;
+    if (resumable_) hooks.random = [this](std::span<std::byte> into) { fill_random(into); };
+    room_.emplace(std::move(options), simulation_of(scene_), hooks);
+  }
+
+  /// Never the same twice, which is all that a test needs.
+  void fill_random(std::span<std::byte> into) {
+    ++secrets_;
+    for (std::size_t i = 0; i < into.size(); ++i) {
+      into[i] = static_cast<std::byte>(secrets_ * 31 + i);
+    }
   }
 
   protocol::Hello hello(std::int32_t seat = protocol::kAnySeat) const {
@@ -111,12 +139,25 @@ class RoomTest : public testing::Test {
     room_->receive(id, protocol::encode(message));
   }
 
+  PeerId admit(std::int32_t seat, Role role, const std::string& identity = "",
+               std::int32_t bound = protocol::kAnySeat) {
+    return room_->admit({hello(seat), role, bound, identity, "192.0.2.1"});
+  }
+
   PeerId join(std::int32_t seat = protocol::kAnySeat,
               protocol::Mode mode = protocol::Mode::kLockstep) {
     const PeerId id = room_->connect();
     protocol::Hello greeting = hello(seat);
     greeting.mode = mode;
     say(id, greeting);
+    return id;
+  }
+
+  /// Joins, and has heard its welcome and the exact state.
+  PeerId enter(std::int32_t seat = protocol::kAnySeat,
+               protocol::Mode mode = protocol::Mode::kLockstep) {
+    const PeerId id = join(seat, mode);
+    (void)hear(id);
     return id;
   }
 
@@ -174,31 +215,74 @@ class RoomTest : public testing::Test {
   std::int64_t now_ = 1'000'000'000;
   MemoryLog log_;
   std::vector<Notice> notices_;
+  bool resumable_ = false;  ///< Before `open`: seats can be resumed.
+  std::size_t secrets_ = 0;
+  DesyncInquiry* inquiry_ = nullptr;
   std::optional<Room> room_;
 };
 
-/// A replica: a world that is stepped by what the room says.
+/// A replica: a world that is stepped by what the room says. Frames that come while the parts of a
+/// state do wait for it.
 struct Mirror {
+  explicit Mirror(const scenes::Scene& scene) : simulation(simulation_of(scene)) {}
+
   scenes::Simulation simulation;
-  std::map<std::uint64_t, std::uint64_t> digests;  ///< After each tick.
-  std::vector<protocol::InputFrame> frames;
+  std::map<std::uint64_t, std::uint64_t> digests{};  ///< After each tick.
+  std::vector<protocol::InputFrame> frames{};
+  std::vector<protocol::InputFrame> waiting{};
+  std::vector<std::byte> parts{};
+  std::uint64_t states = 0;
+  std::uint64_t deltas = 0;
+  bool loading = false;
 
   void take(const std::vector<protocol::ServerMessage>& messages) {
     for (const protocol::ServerMessage& message : messages) {
-      if (const auto* snapshot = std::get_if<protocol::Snapshot>(&message)) {
-        ASSERT_TRUE(simulation.decode(snapshot->state).ok());
-        ASSERT_EQ(simulation.digest(), snapshot->digest);
-        ASSERT_EQ(simulation.tick(), snapshot->tick);
+      if (const auto* part = std::get_if<protocol::SnapshotPart>(&message)) take_part(*part);
+      if (const auto* delta = std::get_if<protocol::StateDelta>(&message)) {
+        ASSERT_EQ(delta->baseline_tick, 0u) << "a whole state was expected";
+        ASSERT_FALSE(loading) << "a snapshot before the state that it may differ from";
+        load(delta->bytes, delta->tick, delta->digest);
+        ++deltas;
       }
-      const auto* frame = std::get_if<protocol::InputFrame>(&message);
-      if (frame == nullptr) continue;
-      ASSERT_EQ(frame->tick, simulation.tick() + 1);
-      std::vector<scenes::SeatInput> inputs;
-      for (const protocol::SeatFrame& seat : frame->seats) inputs.push_back(seat.input);
-      ASSERT_TRUE(simulation.step(inputs).ok());
-      digests[frame->tick] = simulation.digest();
-      frames.push_back(*frame);
+      if (const auto* frame = std::get_if<protocol::InputFrame>(&message)) {
+        if (loading) {
+          waiting.push_back(*frame);
+        } else {
+          step(*frame);
+        }
+      }
     }
+  }
+
+  void take_part(const protocol::SnapshotPart& part) {
+    if (part.offset == 0) {
+      parts.clear();
+      waiting.clear();
+      loading = true;
+    }
+    ASSERT_TRUE(loading);
+    ASSERT_EQ(part.offset, parts.size());
+    parts.insert(parts.end(), part.bytes.begin(), part.bytes.end());
+    if (parts.size() < part.total_bytes) return;
+    loading = false;
+    ++states;
+    load(parts, part.tick, part.digest);
+    for (const protocol::InputFrame& frame : std::exchange(waiting, {})) step(frame);
+  }
+
+  void load(const std::vector<std::byte>& state, std::uint64_t tick, std::uint64_t digest) {
+    ASSERT_TRUE(simulation.decode(state).ok());
+    ASSERT_EQ(simulation.digest(), digest);
+    ASSERT_EQ(simulation.tick(), tick);
+  }
+
+  void step(const protocol::InputFrame& frame) {
+    ASSERT_EQ(frame.tick, simulation.tick() + 1);
+    std::vector<scenes::SeatInput> inputs;
+    for (const protocol::SeatFrame& seat : frame.seats) inputs.push_back(seat.input);
+    ASSERT_TRUE(simulation.step(inputs).ok());
+    digests[frame.tick] = simulation.digest();
+    frames.push_back(frame);
   }
 };
 

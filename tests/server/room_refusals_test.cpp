@@ -35,7 +35,7 @@ class RoomRefusals : public RoomTest {
 };
 
 TEST_F(RoomRefusals, ProtocolVersion) {
-  expect_refused(Refusal::kProtocolVersion, "protocol version 9, here 1", [&](PeerId id) {
+  expect_refused(Refusal::kProtocolVersion, "protocol version 9, here 2", [&](PeerId id) {
     protocol::Hello greeting = hello();
     greeting.protocol_version = 9;
     say(id, greeting);

@@ -1,0 +1,75 @@
+#pragma once
+
+#include <algorithm>
+#include <cstdint>
+
+#include "protocol/lockstep.hpp"
+
+namespace cycloid::server {
+
+/// When the next tick of a room may be made: the schedule, and what holds it up. A tick that was
+/// held up, by a wait, a pause or overload, moves all later ones: none is skipped or hurried.
+class Pacer {
+ public:
+  Pacer(std::int64_t now_ns, std::uint32_t rate_millihertz)
+      : schedule_(now_ns, rate_millihertz),
+        tick_ns_(schedule_.deadline_ns(1) - schedule_.deadline_ns(0)) {}
+
+  std::int64_t tick_ns() const { return tick_ns_; }
+  std::int64_t due_ns(std::uint64_t tick) const { return schedule_.deadline_ns(tick); }
+
+  /// Whether the tick, which is due and lacks an input, goes on waiting. @param ticks_max  from
+  /// when it was due.
+  bool waits(std::uint64_t tick, std::int64_t now_ns, std::uint32_t ticks_max) {
+    const std::int64_t end_ns = due_ns(tick) + tick_ns_ * static_cast<std::int64_t>(ticks_max);
+    waiting_ = now_ns < end_ns;
+    if (waiting_) poll_ns_ = std::min(end_ns, now_ns + tick_ns_ / kPollsPerTick);
+    return waiting_;
+  }
+  bool waiting() const { return waiting_; }
+  /// The tick that waited is made now. Returns by how long it was held up.
+  std::int64_t end_wait(std::uint64_t tick, std::int64_t now_ns) {
+    waiting_ = false;
+    const std::int64_t held_ns = std::max<std::int64_t>(now_ns - due_ns(tick), 0);
+    schedule_.delay(held_ns);
+    return held_ns;
+  }
+
+  void pause(std::int64_t now_ns) {
+    paused_ = true;
+    paused_ns_ = poll_ns_ = now_ns;
+  }
+  bool paused() const { return paused_; }
+  void poll_paused(std::int64_t now_ns) { poll_ns_ = now_ns + kPausedPollNs; }
+  /// Returns by how long the match stood still.
+  std::int64_t resume(std::int64_t now_ns) {
+    paused_ = false;
+    schedule_.delay(now_ns - paused_ns_);
+    return now_ns - paused_ns_;
+  }
+
+  void delay(std::int64_t by_ns) { schedule_.delay(by_ns); }
+  /// The match goes on from an earlier tick, at the time at which it would have gone on anyway.
+  void rewind(std::uint64_t from_tick, std::uint64_t to_tick) {
+    schedule_.delay(due_ns(from_tick) - due_ns(to_tick));
+  }
+
+  /// When to ask again whether `tick` is to be made.
+  std::int64_t next_ns(std::uint64_t tick) const {
+    return paused_ || waiting_ ? poll_ns_ : due_ns(tick);
+  }
+
+ private:
+  /// Of a tick that waits: the last input may come at any moment.
+  static constexpr std::int64_t kPollsPerTick = 8;
+  static constexpr std::int64_t kPausedPollNs = 100'000'000;
+
+  protocol::Schedule schedule_;
+  std::int64_t tick_ns_;
+  bool waiting_ = false;
+  bool paused_ = false;
+  std::int64_t paused_ns_ = 0;
+  std::int64_t poll_ns_ = 0;
+};
+
+}  // namespace cycloid::server

@@ -1,0 +1,34 @@
+#include "server/room/resume_tokens.hpp"
+
+#include <algorithm>
+
+namespace cycloid::server {
+namespace {
+
+bool equal_in_constant_time(const ResumeSecret& ours, std::span<const std::byte> theirs) {
+  std::byte difference{0};
+  for (std::size_t i = 0; i < ours.size(); ++i) difference |= ours[i] ^ theirs[i];
+  return difference == std::byte{0};
+}
+
+}  // namespace
+
+void ResumeTokens::rotate(std::size_t seat, const ResumeSecret& secret,
+                          std::span<const std::byte> used) {
+  ResumeSecret before{};
+  std::ranges::copy(used.first(before.size()), before.begin());
+  seats_[seat] = {secret, before};
+}
+
+std::optional<std::size_t> ResumeTokens::find(std::span<const std::byte> secret) const {
+  if (secret.size() != protocol::kResumeBytes) return std::nullopt;
+  std::optional<std::size_t> found;
+  for (std::size_t seat = 0; seat < seats_.size(); ++seat) {
+    for (const auto& ours : {seats_[seat].now, seats_[seat].before}) {
+      if (ours && equal_in_constant_time(*ours, secret)) found = seat;
+    }
+  }
+  return found;
+}
+
+}  // namespace cycloid::server

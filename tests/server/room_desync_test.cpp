@@ -1,0 +1,157 @@
+#include <gtest/gtest.h>
+
+#include "tests/server/room_fixture.hpp"
+
+namespace cycloid::server {
+namespace {
+
+using protocol::Refusal;
+
+/// Says back what it was asked, and asks for a state.
+class TestInquiry final : public DesyncInquiry {
+ public:
+  InquiryAnswer on_mismatch(const Mismatch& mismatch, const RoomEvidence& evidence) override {
+    mismatches.push_back(mismatch);
+    const auto state = evidence.state_at_or_before(mismatch.tick);
+    EXPECT_NE(state, nullptr);
+    state_tick = state == nullptr ? 0 : state->tick();
+    frames_since = 0;
+    for (std::uint64_t tick = state_tick + 1; tick <= evidence.tick(); ++tick) {
+      EXPECT_NE(evidence.frame_at(tick), nullptr);
+      EXPECT_TRUE(evidence.digest_at(tick));
+      ++frames_since;
+    }
+    return {{protocol::StateWanted{mismatch.tick}}, ""};
+  }
+  InquiryAnswer on_tick_digests(PeerId, const protocol::TickDigests& said,
+                                const RoomEvidence&) override {
+    digests.push_back(said);
+    return {};
+  }
+  InquiryAnswer on_state_part(PeerId, const protocol::StatePart& part,
+                              const RoomEvidence&) override {
+    bytes += part.bytes.size();
+    return {{}, part.offset == 0 ? "" : "a part that nobody asked for"};
+  }
+  void on_gone(PeerId peer) override { gone.push_back(peer); }
+  void on_tick(const protocol::InputFrame&, std::uint64_t, const scenes::Simulation&) override {
+    ++ticks;
+  }
+  std::vector<std::pair<PeerId, protocol::ServerMessage>> take_messages() override {
+    return std::exchange(messages, {});
+  }
+
+  std::vector<Mismatch> mismatches;
+  std::vector<protocol::TickDigests> digests;
+  std::vector<PeerId> gone;
+  std::vector<std::pair<PeerId, protocol::ServerMessage>> messages;
+  std::uint64_t state_tick = 0;
+  std::uint64_t frames_since = 0;
+  std::uint64_t ticks = 0;
+  std::size_t bytes = 0;
+};
+
+class RoomDesync : public RoomTest {};
+
+TEST_F(RoomDesync, IsAnsweredWithTheExactStateAtOnce) {
+  open();
+  const PeerId bad = enter(0);
+  const PeerId good = enter(1);
+  run(65);
+  (void)hear(bad);
+  (void)hear(good);
+  say(good, protocol::Digest{60, log_.ticks[59].digest});
+  EXPECT_FALSE(room_->has_output(good));
+  say(bad, protocol::Digest{60, 0xbad});
+  EXPECT_EQ(room_->statistics().desyncs, 1u);
+  say(bad, protocol::Digest{61, 0xbad});
+  EXPECT_EQ(room_->statistics().desyncs, 1u) << "said before it could have the state";
+  Mirror mirror(scene_);
+  mirror.take(hear(bad));
+  EXPECT_EQ(mirror.states, 1u);
+  EXPECT_EQ(mirror.simulation.tick(), 65u);
+
+  say(bad, protocol::Digest{60, 0xbad});
+  EXPECT_FALSE(room_->has_output(bad));
+  run(60);
+  mirror.take(hear(bad));
+  EXPECT_EQ(mirror.simulation.digest(), room_->digest());
+
+  say(bad, protocol::Digest{120, 0xbad});
+  mirror.take(hear(bad));
+  EXPECT_EQ(mirror.states, 2u);
+  EXPECT_EQ(room_->statistics().desyncs, 2u);
+  EXPECT_EQ(count(Notice::Kind::kDesync), 1) << "said once, counted always";
+  EXPECT_FALSE(room_->wants_close(bad));
+  EXPECT_FALSE(room_->wants_close(good));
+}
+
+TEST_F(RoomDesync, MoreThanThreeInFiveMinutesAreTheEnd) {
+  open();
+  const PeerId id = enter(0);
+  for (int desync = 0; desync < 3; ++desync) {
+    run(60);
+    (void)hear(id);
+    say(id, protocol::Digest{room_->tick(), 0xbad});
+    (void)hear(id);
+    EXPECT_FALSE(room_->wants_close(id));
+  }
+  run(60);
+  (void)hear(id);
+  say(id, protocol::Digest{room_->tick(), 0xbad});
+  const protocol::Refused refused = refusal(id);
+  EXPECT_EQ(refused.code, Refusal::kResyncLimit);
+  EXPECT_EQ(refused.reason, "desynced more than 3 times in 300 s");
+}
+
+TEST_F(RoomDesync, AfterFiveMinutesAClientMayDesyncAgain) {
+  open();
+  const PeerId id = enter(0);
+  for (int desync = 0; desync < 6; ++desync) {
+    for (int second = 0; second < 110; ++second) {
+      run(60);
+      (void)hear(id);
+      say(id, protocol::Ping{1});
+    }
+    (void)hear(id);
+    say(id, protocol::Digest{room_->tick(), 0xbad});
+    (void)hear(id);
+  }
+  EXPECT_FALSE(room_->wants_close(id));
+  EXPECT_EQ(room_->statistics().desyncs, 6u);
+}
+
+TEST_F(RoomDesync, IsInquiredIntoWithTheTicksSinceTheKeyframe) {
+  TestInquiry inquiry;
+  inquiry_ = &inquiry;
+  open();
+  const PeerId id = enter(0);
+  run(100);
+  EXPECT_EQ(inquiry.ticks, 100u);
+  (void)hear(id);
+  say(id, protocol::Digest{90, 0xbad});
+  ASSERT_EQ(inquiry.mismatches.size(), 1u);
+  EXPECT_EQ(inquiry.mismatches[0].tick, 90u);
+  EXPECT_EQ(inquiry.mismatches[0].theirs, 0xbadu);
+  EXPECT_EQ(inquiry.mismatches[0].ours, log_.ticks[89].digest);
+  EXPECT_EQ(inquiry.mismatches[0].name, "tester");
+  EXPECT_EQ(inquiry.state_tick, 60u);
+  EXPECT_EQ(inquiry.frames_since, 40u);
+  const auto messages = hear(id);
+  ASSERT_EQ(only<protocol::StateWanted>(messages).size(), 1u);
+  EXPECT_EQ(only<protocol::SnapshotPart>(messages).size(), 1u) << "without waiting for the answer";
+
+  say(id, protocol::TickDigests{61, {1, 2, 3}});
+  ASSERT_EQ(inquiry.digests.size(), 1u);
+  say(id, protocol::StatePart{90, 6000, 0, std::vector<std::byte>(3000)});
+  EXPECT_EQ(inquiry.bytes, 3000u);
+  inquiry.messages.push_back({id, protocol::RoomNotice{protocol::NoticeKind::kReport, 90, 0, "x"}});
+  run(1);
+  EXPECT_EQ(only<protocol::RoomNotice>(hear(id)).size(), 1u);
+  say(id, protocol::StatePart{90, 6000, 3000, std::vector<std::byte>(3000)});
+  EXPECT_EQ(refusal(id).reason, "a part that nobody asked for");
+  EXPECT_EQ(inquiry.gone, std::vector<PeerId>{id});
+}
+
+}  // namespace
+}  // namespace cycloid::server
