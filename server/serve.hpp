@@ -1,11 +1,13 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <stop_token>
 #include <string>
 
 #include "scenes/catalogue.hpp"
+#include "server/host/room_report.hpp"
 #include "server/log/log_writer.hpp"
 #include "server/room/options.hpp"
 
@@ -25,40 +27,14 @@ struct ServeOptions {
   bool stop_on_log_error = false;  ///< Else the match goes on and says that it is not durable.
   bool catch_signals = true;       ///< SIGINT and SIGTERM drain; a second one ends at once.
   Limits limits;
+  int threads = 1;        ///< For sockets and ticks; the world's own are `workers`.
+  bool realtime = false;  ///< Ask for SCHED_FIFO and locked memory; goes on without.
+  /// From a signal to the end of the match, which ends before where nobody is left; 0: at once.
+  std::chrono::milliseconds drain{0};
 };
 
-enum class End : std::uint8_t {
-  kDrained,   ///< By a signal or the stop token.
-  kTicks,     ///< All wanted ticks were made.
-  kFaulted,   ///< The world entered its fault state.
-  kLogError,  ///< The log could not be written and `stop_on_log_error` was set.
-};
-
-const char* end_name(End end);
-
-struct ServeReport {
-  End end = End::kDrained;
-  std::string reason;
-  std::uint64_t ticks = 0;
-  std::uint64_t final_digest = 0;
-  std::uint64_t worst_tick_ns = 0;    ///< Longest time of one tick: step, digest and encoding.
-  std::uint64_t lateness_p99_ns = 0;  ///< From a tick's deadline to its start; an upper bound.
-  std::uint64_t bytes_in = 0;
-  std::uint64_t bytes_out = 0;
-  std::uint64_t desyncs = 0;
-  std::uint64_t clients = 0;   ///< Hellos that were welcomed.
-  std::uint64_t refusals = 0;  ///< Connections that were told Refused.
-  std::uint64_t inputs_late = 0;
-  std::uint64_t slowed_ns = 0;  ///< Time by which overload put the match behind the clock.
-  bool durable = true;          ///< Whether the log, where there is one, holds all ticks.
-
-  bool good() const { return end == End::kDrained || end == End::kTicks; }
-  /// 0 when `good`, else 1.
-  int exit_code() const { return good() ? 0 : 1; }
-};
-
-/// Runs one room until it is drained, its ticks are over or it cannot go on. Blocks; single thread
-/// for the network and the world, another for the log.
+/// Runs one room, which a hello may name "main" or not at all, until it is drained, its ticks are
+/// over or it cannot go on: a Host with that room alone. Blocks.
 ///
 /// @param on_listening  Told the port, once, before the first tick. May be empty.
 /// @throws std::system_error where the address cannot be bound or the log cannot be created, and

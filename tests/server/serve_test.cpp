@@ -272,7 +272,8 @@ TEST(Serve, WhoHangsUpItsSideStillHearsTheRefusal) {
   peer.half_close();
   const auto refused = peer.wait_for<protocol::Refused>();
   ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->reason, "protocol version 99, here 1");
+  EXPECT_EQ(refused->reason,
+            "protocol version 99, here " + std::to_string(protocol::kProtocolVersion));
   EXPECT_TRUE(peer.at_end());
 }
 

@@ -1,0 +1,132 @@
+#include "server/config/checks.hpp"
+
+#include <algorithm>
+#include <asio/ip/address.hpp>
+#include <filesystem>
+#include <fstream>
+#include <set>
+#include <utility>
+
+namespace cycloid::server {
+namespace {
+
+using Complain = std::function<void(const std::string&, std::string)>;
+
+void check_address(const std::string& key, const std::string& text, const Complain& complain) {
+  asio::error_code error;
+  (void)asio::ip::make_address(text, error);
+  if (error) complain(key, "\"" + text + "\" is no IP address");
+}
+
+void check_admin(ServerConfig& config, const Complain& complain) {
+  const std::string& directory = config.snapshot_directory;
+  if (!directory.empty() && !std::filesystem::is_directory(directory)) {
+    complain("admin.snapshot_directory", directory + " is no directory");
+  }
+  if (config.admin_token_file.empty()) return;
+  AdminOptions admin;
+  std::string mistake;
+  admin.token = read_admin_token(config.admin_token_file, mistake);
+  if (!mistake.empty()) complain("admin.token_file", mistake);
+  admin.snapshot_directory = directory;
+  admin.drain = config.host.drain;
+  config.operation.admin = std::move(admin);
+  if (!config.operation_on) complain("admin.token_file", "operation.enabled is false");
+  asio::error_code error;
+  const auto address = asio::ip::make_address(config.operation.address, error);
+  if (!error && !address.is_loopback() && !config.admin_remote) {
+    complain("operation.address",
+             "others could reach the admin interface there; where that is wanted, write "
+             "admin.remote = true");
+  }
+}
+
+void check_rooms(const ServerConfig& config, const Complain& complain) {
+  const auto joins = [](const auto& named) { return named.second.on_first_join; };
+  const bool made_later = std::ranges::any_of(config.host.templates, joins) ||
+                          (config.operation.admin && !config.host.templates.empty());
+  if (config.host.rooms.empty() && !made_later) {
+    complain("room", "there is no room, and nothing that could make one");
+  }
+  if (config.host.rooms.size() > config.host.limits.rooms_max) {
+    complain("limits.rooms", "the file has " + std::to_string(config.host.rooms.size()) + " rooms");
+  }
+}
+
+void check_tokens(ServerConfig& config, const Complain& complain) {
+  const std::string key = "admission.keys_file";
+  const std::string& file = config.token_keys_file;
+  if (file.empty()) {
+    const bool needed = config.host.gate.tokens != TokenPolicy::kIgnored;
+    if (needed) complain(key, "it is missing: without keys no token is good");
+    return;
+  }
+  std::ifstream stream(file);
+  std::string line;
+  for (int number = 1; std::getline(stream, line); ++number) {
+    if (line.empty() || line[0] == '#') continue;
+    const auto parsed = PublicKey::parse(line);
+    if (parsed) config.host.gate.keys.push_back(*parsed);
+    if (!parsed) {
+      complain(key, file + ":" + std::to_string(number) +
+                        ": it is no public key: \"ed25519-public:\" and 64 hexadecimal digits");
+    }
+  }
+  if (!stream.eof()) complain(key, file + ": cannot be read");
+  if (stream.eof() && config.host.gate.keys.empty())
+    complain(key, file + ": there is no key in it");
+}
+
+void check_tls(ServerConfig& config, const Complain& complain) {
+  if (!config.tls_required) return;
+  if (config.tls_files.certificate_chain.empty()) complain("tls.certificate_file", "it is missing");
+  if (config.tls_files.private_key.empty()) complain("tls.key_file", "it is missing");
+  if (config.tls_files.certificate_chain.empty() || config.tls_files.private_key.empty()) return;
+  try {
+    config.host.tls = std::make_shared<ServerTls>(config.tls_files);
+  } catch (const std::runtime_error& error) {
+    complain("tls.certificate_file", error.what());
+  }
+}
+
+}  // namespace
+
+void check_config(ServerConfig& config, const Complain& complain) {
+  check_address("server.address", config.host.address, complain);
+  check_address("operation.address", config.operation.address, complain);
+  check_tokens(config, complain);
+  check_tls(config, complain);
+  check_admin(config, complain);
+  check_rooms(config, complain);
+}
+
+std::string config_mistakes_text(const std::string& file,
+                                 const std::vector<ConfigMistake>& mistakes) {
+  std::string text;
+  for (const ConfigMistake& mistake : mistakes) {
+    if (!text.empty()) text += '\n';
+    text += file;
+    if (mistake.line > 0) text += ":" + std::to_string(mistake.line);
+    text += ": " + (mistake.key.empty() ? "" : mistake.key + ": ") + mistake.reason;
+  }
+  return text;
+}
+
+std::vector<std::string> fixed_differences(const ServerConfig& running,
+                                           const ServerConfig& wanted) {
+  std::set<std::string> reloads;
+  for (const ConfigKeyText& key : config_keys()) {
+    if (key.reloads) reloads.insert(key.name);
+  }
+  std::set<std::string> fixed;
+  for (const auto& [a, b] : {std::pair(&running, &wanted), std::pair(&wanted, &running)}) {
+    for (const auto& [key, value] : a->values) {
+      const auto other = b->values.find(key);
+      const bool same = other != b->values.end() && other->second == value;
+      if (!same && !reloads.contains(key)) fixed.insert(key);
+    }
+  }
+  return {fixed.begin(), fixed.end()};
+}
+
+}  // namespace cycloid::server

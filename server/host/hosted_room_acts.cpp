@@ -1,0 +1,145 @@
+#include <fcntl.h>
+#include <unistd.h>
+
+#include <algorithm>
+#include <cerrno>
+#include <system_error>
+#include <utility>
+
+#include "server/host/hosted_room.hpp"
+#include "server/host/process_time.hpp"
+
+// What others ask of a room: each act runs on the room's strand.
+
+namespace cycloid::server {
+namespace {
+
+constexpr int kConflict = 409;
+constexpr int kCannotWrite = 500;
+constexpr int kNotFound = 404;
+
+void answer(const HostedRoom::Done& done, ActResult result) {
+  if (done) done(std::move(result));
+}
+
+/// Whole and on the disk, or not there.
+ActResult write_new_file(const std::string& path, const std::vector<std::byte>& bytes) {
+  const auto failed = [&](const char* what, int status) {
+    return ActResult{status,
+                     "file: " + path + ": " + what + ": " + std::generic_category().message(errno)};
+  };
+  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
+  if (file < 0) return failed("cannot be made", errno == EEXIST ? kConflict : kCannotWrite);
+  std::size_t done = 0;
+  while (done < bytes.size()) {
+    const ssize_t count = ::write(file, bytes.data() + done, bytes.size() - done);
+    if (count < 0 && errno == EINTR) continue;
+    if (count <= 0) break;
+    done += static_cast<std::size_t>(count);
+  }
+  ActResult result;
+  if (done < bytes.size() || ::fsync(file) != 0) result = failed("cannot be written", kCannotWrite);
+  (void)::close(file);
+  if (!result.ok()) (void)::unlink(path.c_str());
+  return result;
+}
+
+}  // namespace
+
+void HostedRoom::act(LifeAct act, std::string reason, std::chrono::milliseconds deadline,
+                     Done done) {
+  auto work = [self = shared_from_this(), act, reason = std::move(reason), deadline,
+               done = std::move(done)] {
+    HostedRoom& room = *self;
+    if (!room.room_) return answer(done, {kConflict, "the room has ended"});
+    const std::int64_t now_ns = process_now_ns();
+    const bool was_paused = room.life_.stage() == LifeStage::kPaused;
+    if (std::string why = room.life_.apply(act); !why.empty()) {
+      return answer(done, {kConflict, std::move(why)});
+    }
+    room.publish_stage();
+    room.room_->lock(room.life_.locked());
+    if (act == LifeAct::kPause) {
+      room.clock_.pause(now_ns);
+      room.room_->pause(reason);
+    }
+    if (was_paused && room.life_.stage() != LifeStage::kPaused) {
+      room.clock_.resume(now_ns, room.tick_ns());
+      room.room_->resume();
+    }
+    room.site_.logger->info("room {}: {}{}{}", room.name_, life_act_name(act),
+                            reason.empty() ? "" : ": ", reason);
+    if (act == LifeAct::kDrain) {
+      room.drain_at_ns_ = now_ns + std::chrono::nanoseconds(deadline).count();
+      room.drain_reason_ = reason;
+      room.room_->announce_drain(deadline, reason);
+      room.wake_sessions();
+    }
+    if (act == LifeAct::kEnd) room.end(reason);
+    answer(done, {});
+    room.timer_.cancel();  // Goes on at once in its new stage.
+    if (act == LifeAct::kEnd) room.wait_for_last();
+  };
+  asio::post(strand_, std::move(work));
+}
+
+void HostedRoom::ask(Done done, std::function<ActResult(Room&)> question) {
+  auto work = [self = shared_from_this(), done = std::move(done), question = std::move(question)] {
+    if (!self->room_ || self->life_.stage() == LifeStage::kEnded) {
+      return answer(done, {kConflict, "the room has ended"});
+    }
+    ActResult result = question(*self->room_);
+    self->wake_sessions();
+    answer(done, std::move(result));
+  };
+  asio::post(strand_, std::move(work));
+}
+
+void HostedRoom::kick(std::uint16_t seat, std::string reason, Done done) {
+  ask(std::move(done),
+      [seat, reason = std::move(reason)](Room& room) { return kick_seat(room, seat, reason); });
+}
+
+void HostedRoom::rewind(std::uint64_t tick, Done done) {
+  ask(std::move(done), [tick](Room& room) {
+    if (room.rewind(tick)) return ActResult{};
+    return ActResult{kConflict, "tick: it is " + std::to_string(tick) + ", of the room's " +
+                                    std::to_string(room.tick()) + ", and is no longer kept"};
+  });
+}
+
+void HostedRoom::rotate_log(Done done) {
+  ask(std::move(done), [this](Room&) { return log_->rotate(another_log_path(settings_, name_)); });
+}
+
+void HostedRoom::set_limits(const Limits& limits) {
+  ask({}, [limits](Room& room) {
+    room.set_limits(limits);
+    return ActResult{};
+  });
+}
+
+void HostedRoom::write_snapshot(std::string path, Done done) {
+  auto work = [self = shared_from_this(), path = std::move(path), done = std::move(done)] {
+    if (!self->room_) return answer(done, {kConflict, "the room has ended"});
+    std::vector<std::byte> state;
+    self->room_->encode_state(state);
+    // The disk is for another thread; this one makes ticks.
+    asio::post(self->site_.slow, [path, done, state = std::move(state)] {
+      answer(done, write_new_file(path, state));
+    });
+  };
+  asio::post(strand_, std::move(work));
+}
+
+void HostedRoom::hurry(std::string reason) {
+  asio::post(strand_, [self = shared_from_this(), reason = std::move(reason)] {
+    self->hurries_ = true;
+    if (!self->room_ || self->life_.stage() == LifeStage::kEnded) return;
+    self->end(reason);
+    self->timer_.cancel();
+    self->wait_for_last();
+  });
+}
+
+}  // namespace cycloid::server

@@ -1,0 +1,37 @@
+#pragma once
+
+#include <memory>
+#include <optional>
+
+#include "server/operation/admin.hpp"
+#include "server/operation/metrics.hpp"
+
+namespace cycloid::server {
+
+struct OperationOptions {
+  std::string address = "127.0.0.1";
+  std::uint16_t port = 0;               ///< 0: any.
+  std::uint32_t missed_ticks_max = 60;  ///< /livez fails where a room misses more.
+  std::optional<AdminOptions> admin;    ///< None: its paths do not exist.
+};
+
+/// What others watch and steer a host by, over HTTP: /metrics, /livez, /readyz and /admin/...
+class Operation {
+ public:
+  /// @param host  Outlives this.
+  /// @throws std::system_error where the address cannot be bound.
+  Operation(Host& host, OperationOptions options);
+
+  std::uint16_t port() const { return server_.port(); }
+
+ private:
+  HttpReply handle(const HttpRequest& request);
+
+  Host& host_;
+  OperationOptions options_;
+  HostMetrics metrics_;
+  std::unique_ptr<Admin> admin_;
+  HttpServer server_;  ///< Last: it calls the others until it is gone.
+};
+
+}  // namespace cycloid::server
