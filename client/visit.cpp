@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <utility>
 
-#include "client/attempt.hpp"
+#include "client/net/attempt.hpp"
 #include "client/replica/replica.hpp"
 
 namespace cycloid::client {

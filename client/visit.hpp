@@ -32,6 +32,8 @@ class Visit {
 
   /// As far as it has come; of a visit that is over it changes no more.
   JoinReport report() const;
+  /// What brings the seat back, once; empty where the server gave none.
+  const std::vector<std::byte>& resume() const { return resume_; }
   /// Of the connection there is now, or was last. Null where the scene cannot run.
   Follower* follower();
   const Follower* follower() const;

@@ -1,4 +1,4 @@
-#include "client/attempt.hpp"
+#include "client/net/attempt.hpp"
 
 #include <utility>
 
