@@ -52,7 +52,7 @@ std::set<std::string> promised(const std::string& kind) {
 }
 
 std::string last_error() {
-  std::array<char, 512> text{};
+  std::array<char, 4096> text{};
   EXPECT_LE(cycloid_last_error(text.data(), text.size()), text.size());
   return text.data();
 }
