@@ -93,6 +93,7 @@ void Replica::on_frame(const protocol::InputFrame& frame, Outbox& out) {
 bool Replica::step(const protocol::InputFrame& frame, Outbox& out) {
   inputs_.clear();
   for (const protocol::SeatFrame& seat : frame.seats) inputs_.push_back(seat.input);
+  witness_leaving(out);
   const solver::Error error = predictor_ ? predictor_->confirm(inputs_) : simulation_.step(inputs_);
   if (!error.ok()) {
     fail("the world does not step to tick " + std::to_string(frame.tick) + ": " +
@@ -115,6 +116,16 @@ void Replica::witness_confirmed() {
   if (!predictor_) return witness->confirmed(simulation_);
   predictor_->with_confirmed([witness](const scenes::Simulation& confirmed) {
     witness->confirmed(confirmed);
+    return true;
+  });
+}
+
+void Replica::witness_leaving(Outbox& out) {
+  Witness* witness = options().witness.get();
+  if (witness == nullptr) return;
+  if (!predictor_) return witness->leaving(simulation_, out);
+  predictor_->with_confirmed([&](const scenes::Simulation& confirmed) {
+    witness->leaving(confirmed, out);
     return true;
   });
 }
@@ -149,9 +160,13 @@ void Replica::compare_waiting(Outbox& out) {
     const protocol::Digest mine{theirs.tick, digest()};
     ++progress_.digests_compared;
     out.emplace_back(mine);
-    if (mine.digest == theirs.digest) continue;
+    if (mine.digest == theirs.digest) {
+      if (options().witness) options().witness->agreed(theirs.tick);
+      continue;
+    }
     ++progress_.mismatches;
     diverged_ = true;
+    witness_leaving(out);
     if (options().witness) options().witness->diverged(theirs.tick, out);
   }
 }

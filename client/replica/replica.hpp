@@ -48,6 +48,7 @@ class Replica final : public Follower {
   bool can_follow(std::uint64_t tick);
   bool step(const protocol::InputFrame& frame, Outbox& out);
   void witness_confirmed();
+  void witness_leaving(Outbox& out);
   void compare_waiting(Outbox& out);
 
   std::unique_ptr<Predictor> predictor_;

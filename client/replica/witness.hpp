@@ -18,6 +18,11 @@ class Witness {
 
   /// The world as it is after a confirmed tick, whatever has been predicted beyond it.
   virtual void confirmed(const scenes::Simulation&) {}
+  /// The confirmed world right before the step that leaves it, and before `diverged`: what
+  /// `confirmed` saw, unless something in memory has changed it since.
+  virtual void leaving(const scenes::Simulation&, Outbox&) {}
+  /// My digest of this tick is the server's.
+  virtual void agreed(std::uint64_t /*tick*/) {}
   /// The exact state of the server is in place of the world now: what was seen before is gone.
   virtual void replaced(const scenes::Simulation&) {}
   /// My digest of this tick is not the server's.
