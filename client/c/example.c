@@ -1,6 +1,6 @@
-/* Plays a match: joins a server, says what the scene's script says, counts what it sees, leaves when
- * the server ends the match. A second world beside it, without a network, checks one thing that
- * holds for every client: the same inputs give the same bits.
+/* Plays a match: joins a server, says what the scene's script says, counts what it sees, leaves
+ * when the server ends the match. A second world beside it, without a network, checks one thing
+ * that holds for every client: the same inputs give the same bits.
  *
  *   example HOST PORT SCENE [PREDICT_TICKS]
  *
