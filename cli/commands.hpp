@@ -42,6 +42,7 @@ void add_experiments(CLI::App& app, Action& action);
 void add_version(CLI::App& app, Action& action);
 void add_serve(CLI::App& app, Action& action);
 void add_join(CLI::App& app, Action& action);
+void add_synctest(CLI::App& app, Action& action);
 void add_demo(CLI::App& app, Action& action);
 void add_token(CLI::App& app, Action& action);
 

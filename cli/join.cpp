@@ -3,10 +3,12 @@
 #include <charconv>
 #include <iostream>
 #include <memory>
+#include <random>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/signals.hpp"
+#include "client/token_text.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -21,6 +23,11 @@ struct JoinCommand {
   std::uint64_t ticks = 0;
   std::string name;
   int workers = 1;
+  std::string room;
+  std::string token;
+  std::uint32_t predict = 0;
+  std::string profile = "exact";
+  std::uint32_t reconnect_s = 0;
 };
 
 /// "HOST:PORT", "[::1]:PORT" or Failure.
@@ -49,6 +56,17 @@ std::int32_t parse_seat(const std::string& text) {
   return seat;
 }
 
+/// What `cycloid token` has written, without the end of its line.
+std::vector<std::byte> read_token(const std::string& file) {
+  if (file.empty()) return {};
+  std::string text;
+  for (const std::byte letter : read_file(file)) text += static_cast<char>(letter);
+  while (!text.empty() && (text.back() == '\n' || text.back() == '\r')) text.pop_back();
+  const auto token = client::token_from_text(text);
+  if (!token) throw Failure(kExitUsage, "--token: " + file + " holds no token");
+  return *token;
+}
+
 Exit exit_of_refusal(Refusal code) {
   switch (code) {
     case Refusal::kProtocolVersion:
@@ -57,12 +75,11 @@ Exit exit_of_refusal(Refusal code) {
       return kExitIncompatible;
     case Refusal::kSeatTaken:
     case Refusal::kNoSuchSeat:
+    case Refusal::kNoSuchRoom:
     case Refusal::kTokenInvalid:
     case Refusal::kTokenExpired:
     case Refusal::kTokenUsed:
     case Refusal::kTokenScope:
-    case Refusal::kNoSuchRoom:
-    case Refusal::kResumeUnknown:
       return kExitUsage;
     case Refusal::kBadMessage:
     case Refusal::kTooLarge:
@@ -70,16 +87,9 @@ Exit exit_of_refusal(Refusal code) {
     case Refusal::kFaulted:
     case Refusal::kResyncLimit:
       return kExitDiverged;
-    case Refusal::kRoomFull:
-    case Refusal::kTooSlow:
-    case Refusal::kDraining:
-    case Refusal::kRoomLocked:
-    case Refusal::kRateLimited:
-    case Refusal::kKicked:
-    case Refusal::kReplaced:
+    default:
       return kExitIo;
   }
-  return kExitIo;
 }
 
 Exit exit_of(const client::JoinReport& report) {
@@ -105,14 +115,40 @@ Json to_json(const client::JoinReport& report) {
                  {"resyncs", progress.resyncs},
                  {"inputs_sent", progress.inputs_sent},
                  {"inputs_replaced", progress.inputs_replaced},
+                 {"lead_ticks", progress.lead_ticks},
+                 {"rewinds", progress.rewinds},
+                 {"reconnects", report.reconnects},
+                 {"rollbacks", report.prediction.rollbacks},
+                 {"ticks_resimulated", report.prediction.resimulated},
+                 {"deepest_rollback_ticks", report.prediction.deepest_ticks},
+                 {"prediction_stalls", report.prediction.stalls},
                  {"bytes_in", report.bytes_in},
                  {"bytes_out", report.bytes_out}};
   if (report.refused()) object["refusal"] = static_cast<int>(report.refused()->code);
   return object;
 }
 
+/// The way to the room and back to it.
+void set_connection(const JoinCommand& command, client::JoinOptions& options) {
+  if (command.room.size() > protocol::kRoomNameBytesMax) {
+    throw Failure(kExitUsage, "--room: longer than " + std::to_string(protocol::kRoomNameBytesMax) +
+                                  " bytes: " + command.room);
+  }
+  options.room = command.room;
+  options.token = read_token(command.token);
+  options.reconnect.on = command.reconnect_s != 0;
+  options.reconnect.deadline = std::chrono::seconds(command.reconnect_s);
+  options.reconnect.seed = std::random_device{}();
+}
+
 Exit join(const JoinCommand& command, bool json) {
+  if (command.predict != 0 && command.snapshot) {
+    throw Failure(kExitUsage, "--predict: a snapshot client steps nothing; leave --snapshot out");
+  }
   client::JoinOptions options;
+  set_connection(command, options);
+  options.predict_ticks = command.predict;
+  if (command.profile == "quantised") options.profile = protocol::Profile::kQuantised;
   parse_server(command.server, options);
   options.seat_wish = parse_seat(command.seat);
   options.scene = load_scene(command.scene);
@@ -158,6 +194,19 @@ void add_join(CLI::App& app, Action& action) {
   command->add_option("--workers", options->workers, "Threads; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
+  command->add_option("--room", options->room, "Its name, where the server has several");
+  command->add_option("--token", options->token, "File with the token that admits us");
+  command
+      ->add_option("--predict", options->predict, "Most ticks to run ahead of the server; 0: none")
+      ->capture_default_str()
+      ->check(CLI::Range(0u, client::Predictor::kWindowTicksMax));
+  command->add_option("--profile", options->profile, "Of received states: exact or quantised")
+      ->capture_default_str()
+      ->check(CLI::IsMember({"exact", "quantised"}));
+  command
+      ->add_option("--reconnect", options->reconnect_s,
+                   "Seconds to try to come back to the seat after a break; 0: not at all")
+      ->capture_default_str();
   command->callback(
       [options, &action] { action.run = [=, &action] { return join(*options, action.json); }; });
 }

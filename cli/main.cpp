@@ -43,6 +43,7 @@ static Exit parse_and_run(int argc, char** argv) {
 #ifdef CYCLOID_NETWORK
   add_serve(app, action);
   add_join(app, action);
+  add_synctest(app, action);
   add_demo(app, action);
   add_token(app, action);
 #endif

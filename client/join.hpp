@@ -3,10 +3,14 @@
 #include <chrono>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <string>
+#include <vector>
 
+#include "client/backoff.hpp"
 #include "client/replica/follower.hpp"
+#include "client/replica/predictor.hpp"
 #include "protocol/messages.hpp"
 #include "scenes/catalogue.hpp"
 
@@ -19,7 +23,15 @@ struct JoinOptions {
   protocol::Mode mode = protocol::Mode::kLockstep;
   std::int32_t seat_wish = protocol::kAnySeat;
   std::string name;
-  std::uint64_t ticks = 0;  ///< Leave after so many ticks of the match; 0: stay.
+  std::string room;               ///< "": the only one, or the one that the token names.
+  std::vector<std::byte> token;   ///< Signed admission; empty where the server asks for none.
+  std::vector<std::byte> resume;  ///< Of an earlier Welcome, to get its seat back; or empty.
+  protocol::Profile profile = protocol::Profile::kExact;  ///< Of a snapshot client's states.
+  std::uint32_t predict_ticks = 0;  ///< Most ticks that a lockstep client predicts, up to 64.
+  ReconnectOptions reconnect;
+  std::shared_ptr<StateDecoder> decoder;  ///< Of deltas; empty: whole exact states only.
+  std::shared_ptr<Witness> witness;       ///< Of confirmed states, such as for desync reports.
+  std::uint64_t ticks = 0;                ///< Leave after so many ticks of the match; 0: stay.
   int workers = 1;
   InputSource input;  ///< Where empty: scenes::scripted_input of the scene.
   std::chrono::milliseconds connect{5000};
@@ -27,8 +39,13 @@ struct JoinOptions {
   std::chrono::milliseconds silence{10000};
   /// Asked about every 50 ms, on the thread of `join`; true makes it leave.
   std::function<bool()> should_stop;
-  /// Told after every message that was taken in, such as to draw the state.
+  /// Told whenever messages were taken in, such as to draw the state.
   std::function<void(Follower&)> on_progress;
+  /// Told each welcome, such as to keep its resume token.
+  std::function<void(const protocol::Welcome&)> on_welcome;
+  /// Told every confirmed frame and every notice, in order.
+  std::function<void(const protocol::InputFrame&)> on_frame;
+  std::function<void(const protocol::RoomNotice&)> on_notice;
 };
 
 enum class End : std::uint8_t {
@@ -45,7 +62,11 @@ const char* end_name(End end);
 struct JoinReport {
   End end = End::kFailed;
   std::string reason;
-  Progress progress;
+  Progress progress;              ///< Of the last connection, with the counts of all.
+  std::uint64_t reconnects = 0;   ///< Times that a broken connection was followed by a welcome.
+  std::uint64_t tries = 0;        ///< Connections begun after the first.
+  std::uint64_t fresh_joins = 0;  ///< Welcomes after the server had forgotten the resume token.
+  PredictorStatistics prediction;
   std::uint64_t final_digest = 0;  ///< Of the state at `progress.last_tick`.
   std::uint64_t bytes_in = 0;
   std::uint64_t bytes_out = 0;
@@ -54,7 +75,8 @@ struct JoinReport {
 };
 
 /// Plays in a room until the ticks are over, the server says goodbye or sends us away, or the
-/// connection breaks. Blocks; but never longer than the deadlines where the server does not answer.
+/// connection breaks for good. Blocks; but never longer than the deadlines where the server does
+/// not answer.
 JoinReport join(const JoinOptions& options);
 
 }  // namespace cycloid::client

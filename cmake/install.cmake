@@ -5,13 +5,14 @@ include(CMakePackageConfigHelpers)
 set(CYCLOID_INSTALLED cycloid_solver cycloid_scenes cycloid_protocol cycloid_cli)
 set(CYCLOID_HEADER_FOLDERS solver scenes protocol)
 if(CYCLOID_NETWORK)
-  list(APPEND CYCLOID_INSTALLED cycloid_client)
+  list(APPEND CYCLOID_INSTALLED cycloid_client cycloid_c)
   list(APPEND CYCLOID_HEADER_FOLDERS client)
 endif()
 
 set_target_properties(cycloid_cli PROPERTIES EXPORT_NAME cli)
 install(TARGETS ${CYCLOID_INSTALLED} EXPORT cycloidTargets
   ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR}
+  LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
 # The headers of a folder itself, and of client/replica: deeper folders and the two of the step are
@@ -33,6 +34,11 @@ endforeach()
 if(CYCLOID_NETWORK)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/client/replica
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/client FILES_MATCHING PATTERN "*.hpp")
+  install(FILES ${PROJECT_SOURCE_DIR}/client/c/cycloid.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  configure_file(${PROJECT_SOURCE_DIR}/client/c/cycloid.pc.in
+    ${CMAKE_CURRENT_BINARY_DIR}/cycloid.pc @ONLY)
+  install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cycloid.pc
+    DESTINATION ${CMAKE_INSTALL_LIBDIR}/pkgconfig)
 endif()
 
 set(CYCLOID_PACKAGE ${CMAKE_INSTALL_LIBDIR}/cmake/cycloid)

@@ -122,6 +122,7 @@ void Follower::on_welcome(const protocol::Welcome& welcome) {
     return fail("an input delay of " + std::to_string(welcome.input_delay_ticks) + " ticks");
   }
   welcome_ = welcome;
+  welcomed_ = true;
   base_tick_ = welcome.tick;
   lead_.start(welcome.tick, welcome.input_delay_ticks);
   progress_.lead_ticks = lead_.lead_ticks();

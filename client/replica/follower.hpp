@@ -38,6 +38,8 @@ class Follower {
 
   const Progress& progress() const { return progress_; }
   std::uint32_t tick_rate_millihertz() const { return welcome_.tick_rate_millihertz; }
+  /// Whether the server has let us in, and then how.
+  bool welcomed() const { return welcomed_; }
   const protocol::Welcome& welcome() const { return welcome_; }
   /// The state to show: the predicted one where there are predictions. Of a snapshot client with
   /// the quantised profile it is the last exact one; see `poses`.
@@ -100,6 +102,7 @@ class Follower {
   protocol::Mode mode_;
   FollowerOptions options_;
   protocol::Welcome welcome_;
+  bool welcomed_ = false;
   SnapshotAssembly assembly_;
   LeadController lead_;
   std::uint64_t pings_ = 0;

@@ -7,6 +7,7 @@
 #include <limits>
 #include <map>
 #include <memory>
+#include <optional>
 #include <random>
 #include <utility>
 #include <variant>
@@ -48,11 +49,12 @@ class Wire {
 };
 
 /// A room with its clients and its network on one simulated clock: input windows, repeated inputs,
-/// frames, a digest and a margin every tick, as docs/protocol.md has them.
+/// frames, a digest every tick and margins, as docs/protocol.md has them.
 class SimulatedRoom {
  public:
   static constexpr std::int64_t kTickUs = 16667;
   static constexpr std::int64_t kStepUs = 500;
+  static constexpr std::uint64_t kMarginTicks = 6;
 
   struct Link {
     std::int64_t rtt_us = 0;
@@ -70,6 +72,8 @@ class SimulatedRoom {
     std::vector<std::uint64_t> replaced_ticks;
     protocol::Margin margin;
     bool margin_known = false;
+    std::uint64_t told_tick = 0;
+    std::optional<std::int32_t> early;  ///< Of the worst input of this tick.
     std::vector<std::int32_t> margins;  ///< One a tick: the worst input's.
   };
 
@@ -152,6 +156,18 @@ class SimulatedRoom {
     const bool first = !seat.margin_known;
     seat.margin.early_ticks = first ? early : std::min(early, seat.margin.early_ticks);
     seat.margin_known = true;
+    seat.early = std::min(early, seat.early.value_or(early));
+  }
+
+  /// Every few ticks, and at once where an input was late or missing.
+  void tell_margin(Seat& seat, std::uint64_t tick) {
+    if (!seat.margin_known && seat.margin.missed == 0) return;
+    const bool in_time = seat.margin.missed == 0 && seat.margin.early_ticks >= 0;
+    if (in_time && tick - seat.told_tick < kMarginTicks) return;
+    seat.margin.tick = seat.told_tick = tick;
+    tell(seat, seat.margin);
+    seat.margin = {};
+    seat.margin_known = false;
   }
 
   void close() {
@@ -176,12 +192,9 @@ class SimulatedRoom {
     for (Seat& seat : seats_) {
       tell(seat, frame);
       tell(seat, protocol::Digest{frame.tick, digests_.back()});
-      seat.margin.tick = frame.tick;
-      tell(seat, seat.margin);
-      seat.margins.push_back(seat.margin_known ? seat.margin.early_ticks
-                                               : std::numeric_limits<std::int32_t>::max());
-      seat.margin = {};
-      seat.margin_known = false;
+      seat.margins.push_back(seat.early.value_or(std::numeric_limits<std::int32_t>::max()));
+      seat.early.reset();
+      tell_margin(seat, frame.tick);
     }
   }
 
