@@ -1,0 +1,281 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "server/room/history.hpp"
+#include "server/room/outbox.hpp"
+#include "server/room/rates.hpp"
+#include "server/room/resume_tokens.hpp"
+#include "server/room/snapshot_feed.hpp"
+#include "tests/server/room_fixture.hpp"
+
+namespace cycloid::server {
+namespace {
+
+constexpr std::int64_t kSecondNs = 1'000'000'000;
+
+Shared bytes_of(std::size_t bytes) {
+  return std::make_shared<const protocol::Bytes>(bytes);
+}
+
+std::shared_ptr<const ExactState> state_of(std::uint64_t tick, std::size_t bytes) {
+  return std::make_shared<const ExactState>(tick, tick * 1000, protocol::Bytes(bytes));
+}
+
+TEST(RateBucket, GivesNoMoreThanItsRateOverAnySpan) {
+  RateBucket bucket(100, 20);
+  std::mt19937 random(1);
+  std::int64_t now = 5 * kSecondNs;
+  const std::int64_t begin = now;
+  std::uint64_t taken = 0;
+  for (int i = 0; i < 200'000; ++i) {
+    now += static_cast<std::int64_t>(random() % 1'000'000);
+    taken += bucket.take(now, 1) ? 1 : 0;
+    const double allowed = 20.0 + 100.0 * static_cast<double>(now - begin) / kSecondNs;
+    ASSERT_LE(static_cast<double>(taken), allowed + 1e-6);
+  }
+  EXPECT_GT(static_cast<double>(taken), 100.0 * static_cast<double>(now - begin) / kSecondNs - 1);
+}
+
+TEST(RateBucket, IsFullAfterAnyPauseAndNeverMoreThanFull) {
+  RateBucket bucket(3, 7);
+  EXPECT_TRUE(bucket.take(0, 7));
+  EXPECT_FALSE(bucket.take(kSecondNs / 3, 1)) << "a nanosecond early: 1/3 s is rounded down";
+  EXPECT_TRUE(bucket.take(kSecondNs / 3 + 1, 1));
+  EXPECT_FALSE(bucket.take(std::int64_t{1} << 60, 8));
+  EXPECT_TRUE(bucket.take(std::int64_t{1} << 60, 7));
+  EXPECT_FALSE(bucket.take(std::int64_t{1} << 60, 1));
+}
+
+TEST(ActBudget, AllowsSoManyWithinAnySpan) {
+  ActBudget budget(3, std::chrono::seconds(10));
+  EXPECT_TRUE(budget.take(0));
+  EXPECT_TRUE(budget.take(4 * kSecondNs));
+  EXPECT_TRUE(budget.take(9 * kSecondNs));
+  EXPECT_FALSE(budget.take(10 * kSecondNs - 1));
+  EXPECT_TRUE(budget.take(10 * kSecondNs)) << "the first is out of it";
+  EXPECT_FALSE(budget.take(13 * kSecondNs));
+}
+
+TEST(Outbox, IsBoundedInBytesAndRefusesWithoutChange) {
+  Outbox outbox(100);
+  EXPECT_TRUE(outbox.push_frame(bytes_of(60), 1));
+  EXPECT_FALSE(outbox.push_control(bytes_of(41), 2));
+  EXPECT_EQ(outbox.bytes(), 60u);
+  EXPECT_TRUE(outbox.push_control(bytes_of(40), 3));
+  outbox.push_last(bytes_of(1000));
+  std::uint32_t parts = 8;
+  const auto output = outbox.take(parts);
+  ASSERT_EQ(output.size(), 3u);
+  EXPECT_EQ(output[2]->size(), 1000u) << "the last word is last, whatever its size";
+  EXPECT_EQ(outbox.bytes(), 0u);
+  EXPECT_FALSE(outbox.has_output(8));
+}
+
+TEST(Outbox, AStateTakesThePlaceOfFramesAndComesBetweenThem) {
+  Outbox outbox(1000);
+  ASSERT_TRUE(outbox.push_frame(bytes_of(1), 1));
+  ASSERT_TRUE(outbox.push_control(bytes_of(2), 1));
+  outbox.begin_state(state_of(5, 5 * protocol::kSnapshotPartBytesMax));
+  EXPECT_TRUE(outbox.state_untouched());
+  ASSERT_TRUE(outbox.push_frame(bytes_of(3), 2));
+  std::uint32_t parts = 2;
+  auto output = outbox.take(parts);
+  EXPECT_EQ(parts, 0u);
+  ASSERT_EQ(output.size(), 4u);
+  EXPECT_EQ(output[0]->size(), 2u) << "what was said before it";
+  EXPECT_GT(output[1]->size(), protocol::kSnapshotPartBytesMax);
+  EXPECT_EQ(output[3]->size(), 3u);
+  EXPECT_FALSE(outbox.has_output(parts)) << "its share of this tick is gone";
+  EXPECT_TRUE(outbox.has_output(1));
+  outbox.replace_snapshot(bytes_of(7));
+  parts = 2;
+  EXPECT_EQ(outbox.take(parts).size(), 2u) << "the snapshot differs from a state that is not there";
+  parts = 2;
+  output = outbox.take(parts);
+  ASSERT_EQ(output.size(), 2u);
+  EXPECT_EQ(output[1]->size(), 7u);
+  EXPECT_EQ(parts, 1u);
+}
+
+TEST(Outbox, KnowsItsOldestFrameAndNotItsOldestWord) {
+  Outbox outbox(1000);
+  ASSERT_TRUE(outbox.push_control(bytes_of(1), 5));
+  EXPECT_FALSE(outbox.oldest_frame_ns());
+  ASSERT_TRUE(outbox.push_frame(bytes_of(1), 9));
+  ASSERT_TRUE(outbox.push_frame(bytes_of(1), 10));
+  EXPECT_EQ(outbox.oldest_frame_ns(), 9);
+}
+
+TEST(KeyframeRing, KeepsToItsBudgetButForWhatIsNeeded) {
+  KeyframeRing ring(1000);
+  for (std::uint64_t tick = 0; tick <= 500; tick += 10) ring.push(state_of(tick, 300), tick);
+  EXPECT_EQ(ring.size(), 3u);
+  EXPECT_EQ(ring.bytes(), 900u);
+  EXPECT_EQ(ring.at_or_before(495)->tick(), 490u);
+  EXPECT_EQ(ring.at_or_before(479), nullptr);
+  for (std::uint64_t tick = 510; tick <= 600; tick += 10) ring.push(state_of(tick, 300), 523);
+  EXPECT_EQ(ring.at_or_before(523)->tick(), 520u) << "over the budget, and needed";
+  EXPECT_EQ(ring.at_or_before(519), nullptr);
+  ring.drop_after(570);
+  EXPECT_EQ(ring.at_or_before(600)->tick(), 570u);
+  ring.drop_before(560);
+  EXPECT_EQ(ring.size(), 2u);
+  EXPECT_EQ(ring.bytes(), 600u);
+}
+
+TEST(FrameRing, FindsTheLastTicksAndNoOther) {
+  FrameRing ring(10);
+  EXPECT_EQ(ring.find(1), nullptr);
+  for (std::uint64_t tick = 1; tick <= 25; ++tick) {
+    protocol::InputFrame frame;
+    frame.tick = tick;
+    ring.push({frame, tick, nullptr});
+  }
+  EXPECT_EQ(ring.find(15), nullptr);
+  EXPECT_EQ(ring.find(26), nullptr);
+  for (std::uint64_t tick = 16; tick <= 25; ++tick) EXPECT_EQ(ring.find(tick)->digest, tick);
+  ring.drop_after(20);
+  EXPECT_EQ(ring.find(21), nullptr);
+  EXPECT_EQ(ring.size(), 5u);
+}
+
+TEST(ResumeTokens, AreGoodForOneSeatOnce) {
+  ResumeTokens tokens(3);
+  ResumeSecret first{};
+  ResumeSecret second{};
+  first.fill(std::byte{1});
+  second.fill(std::byte{2});
+  EXPECT_FALSE(tokens.find(ResumeSecret{})) << "no secret is the secret of no seat";
+  tokens.give(1, first);
+  EXPECT_EQ(tokens.find(first), 1u);
+  for (std::size_t byte = 0; byte < first.size(); ++byte) {
+    ResumeSecret wrong = first;
+    wrong[byte] ^= std::byte{0x80};
+    EXPECT_FALSE(tokens.find(wrong)) << byte;
+  }
+  EXPECT_FALSE(tokens.find(std::span(first).first(31)));
+  tokens.rotate(1, second, first);
+  EXPECT_EQ(tokens.find(second), 1u);
+  EXPECT_EQ(tokens.find(first), 1u) << "until the second is known to have come";
+  tokens.confirm(1);
+  EXPECT_FALSE(tokens.find(first));
+  tokens.forget(1);
+  EXPECT_FALSE(tokens.find(second));
+}
+
+/// Codes a state as its size and that of its baseline.
+class SizeCoder final : public StateCoder {
+ public:
+  ProfiledState capture(protocol::Profile, const scenes::Simulation&,
+                        const ExactState& state) const override {
+    return {state.tick(), state.digest(), state.bytes()};
+  }
+  std::optional<protocol::Bytes> delta(protocol::Profile, const ProfiledState* baseline,
+                                       const ProfiledState& now) const override {
+    if (baseline == nullptr) return now.bytes;
+    return protocol::Bytes(1 + now.tick - baseline->tick);
+  }
+};
+
+class SnapshotFeedTest : public testing::Test {
+ protected:
+  protocol::StateDelta message(SnapshotFeed& feed, std::uint64_t baseline, std::uint64_t tick,
+                               protocol::Profile profile = protocol::Profile::kExact) {
+    const ExactState state(tick, tick * 10, protocol::Bytes(1000));
+    const Shared bytes = feed.message(profile, baseline, simulation_, state);
+    const auto decoded =
+        protocol::decode_server(std::span(*bytes).subspan(protocol::Framer::kPrefixBytes));
+    EXPECT_TRUE(decoded.message) << decoded.error;
+    return std::get<protocol::StateDelta>(*decoded.message);
+  }
+
+  SizeCoder coder_;
+  scenes::Simulation simulation_ = simulation_of(two_seat_scene());
+};
+
+TEST_F(SnapshotFeedTest, ATickIsCodedOnceForEachBaselineAndProfile) {
+  SnapshotFeed feed(coder_, 1u << 20, 180);
+  for (const std::uint64_t tick : {3u, 6u, 9u}) (void)message(feed, 0, tick);
+  EXPECT_EQ(feed.encodes(), 3u);
+  for (int client = 0; client < 128; ++client) {
+    const auto delta = message(feed, client % 2 == 0 ? 6 : 9, 12);
+    EXPECT_EQ(delta.baseline_tick, client % 2 == 0 ? 6u : 9u);
+    EXPECT_EQ(delta.digest, 120u);
+  }
+  EXPECT_EQ(feed.encodes(), 5u) << "two baselines, whoever many clients";
+  (void)message(feed, 6, 12, protocol::Profile::kQuantised);
+  EXPECT_EQ(feed.encodes(), 6u);
+}
+
+TEST_F(SnapshotFeedTest, ABaselineThatIsNotKeptIsNone) {
+  SnapshotFeed feed(coder_, 1u << 20, 30);
+  for (std::uint64_t tick = 3; tick <= 60; tick += 3) (void)message(feed, 0, tick);
+  EXPECT_EQ(message(feed, 4, 63).baseline_tick, 0u) << "never sent";
+  EXPECT_EQ(message(feed, 30, 63).baseline_tick, 0u) << "too old";
+  EXPECT_EQ(message(feed, 33, 63).baseline_tick, 33u);
+  EXPECT_EQ(message(feed, 66, 63).baseline_tick, 0u) << "of the future";
+}
+
+TEST_F(SnapshotFeedTest, HistoryIsBoundedWhetherOrNotAnybodyAnswers) {
+  SnapshotFeed feed(coder_, 5000, 1'000'000);
+  for (std::uint64_t tick = 3; tick <= 3000; tick += 3) {
+    (void)message(feed, 0, tick);
+    ASSERT_LE(feed.bytes(), 5000u);
+  }
+  EXPECT_EQ(feed.baselines(), 5u);
+}
+
+class RoomSnapshots : public RoomTest {};
+
+TEST_F(RoomSnapshots, DifferFromWhatTheClientHasAcknowledged) {
+  SizeCoder coder;
+  scene_ = two_seat_scene();
+  RoomOptions options;
+  options.scene_digest = scenes::scene_digest(scene_);
+  RoomHooks hooks;
+  hooks.now_ns = [this] { return now_; };
+  hooks.coder = &coder;
+  room_.emplace(options, simulation_of(scene_), hooks);
+  run(1);
+  const PeerId id = join(0, protocol::Mode::kSnapshot);
+  const auto welcome = hear(id);
+  ASSERT_EQ(only<protocol::SnapshotPart>(welcome).size(), 1u);
+  EXPECT_EQ(only<protocol::SnapshotPart>(welcome)[0].tick, 1u);
+  run(2);
+  EXPECT_EQ(only<protocol::StateDelta>(hear(id))[0].baseline_tick, 0u);
+  say(id, protocol::Ack{1});
+  run(3);
+  EXPECT_EQ(only<protocol::StateDelta>(hear(id))[0].baseline_tick, 1u) << "that of its join counts";
+  say(id, protocol::Ack{6});
+  say(id, protocol::Ack{3});
+  run(3);
+  auto delta = only<protocol::StateDelta>(hear(id))[0];
+  EXPECT_EQ(delta.tick, 9u);
+  EXPECT_EQ(delta.baseline_tick, 6u) << "an older one, said later, is no step back";
+  run(200);
+  delta = only<protocol::StateDelta>(hear(id))[0];
+  EXPECT_EQ(delta.baseline_tick, 0u) << "what nobody acknowledges for 3 s is not kept";
+  say(id, protocol::Ack{room_->tick() + 1});
+  EXPECT_EQ(refusal(id).reason, "an acknowledgement of tick 210, the last made is 209");
+}
+
+TEST_F(RoomSnapshots, AreMadeOnceForAll) {
+  Limits limits;
+  limits.keyframe_ticks = 1'000'000;
+  open(limits);
+  std::vector<PeerId> ids;
+  for (int i = 0; i < 100; ++i)
+    ids.push_back(join(protocol::kSpectator, protocol::Mode::kSnapshot));
+  for (const PeerId id : ids) (void)hear(id);
+  const std::uint64_t before = room_->statistics().encodes;
+  for (int tick = 0; tick < 30; ++tick) {
+    run(1);
+    for (const PeerId id : ids) (void)hear(id);
+  }
+  EXPECT_EQ(room_->statistics().encodes - before, 20u) << "a state and a snapshot every 3 ticks";
+}
+
+}  // namespace
+}  // namespace cycloid::server
