@@ -45,5 +45,6 @@ void add_join(CLI::App& app, Action& action);
 void add_synctest(CLI::App& app, Action& action);
 void add_demo(CLI::App& app, Action& action);
 void add_token(CLI::App& app, Action& action);
+void add_desync(CLI::App& app, Action& action);
 
 }  // namespace cycloid::cli

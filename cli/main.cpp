@@ -46,6 +46,7 @@ static Exit parse_and_run(int argc, char** argv) {
   add_synctest(app, action);
   add_demo(app, action);
   add_token(app, action);
+  add_desync(app, action);
 #endif
   add_run(app, action);
   add_replay(app, action);

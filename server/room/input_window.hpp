@@ -28,7 +28,10 @@ class InputWindow {
     const Said& said = said_[slot(tick)];
     return said.tick == tick ? std::optional(said.early_ticks) : std::nullopt;
   }
-  bool spoke() const { return last_.has_value(); }
+  /// One came too late.
+  void note_late() { late_ = true; }
+  /// Whether its holder is one to expect inputs of: it gave one, or tried to.
+  bool spoke() const { return last_.has_value() || late_; }
 
   /// Closes the input of one tick; ticks are closed in order.
   protocol::SeatFrame close(std::uint64_t tick, const InputPolicy& policy) {
@@ -48,6 +51,7 @@ class InputWindow {
     const Said& said = said_[slot(tick)];
     if (said.tick == tick) return {protocol::Origin::kGiven, said.input};
     last_.reset();
+    late_ = false;
     return {protocol::Origin::kNeutral, {}};
   }
 
@@ -62,6 +66,7 @@ class InputWindow {
 
   std::array<Said, protocol::kInputWindowTicks> said_{};
   std::optional<scenes::SeatInput> last_;
+  bool late_ = false;
 };
 
 }  // namespace cycloid::server

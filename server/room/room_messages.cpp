@@ -112,6 +112,7 @@ void Room::on_input(PeerId id, Peer& peer, const protocol::Input& input) {
       ++statistics_.inputs_late;
       const std::uint64_t late = made + 1 - input.tick;
       if (late > protocol::kInputWindowTicks) return;  // Of another time, and nothing to steer by.
+      hold.window.note_late();
       hold.margin.on_input(-static_cast<std::int32_t>(late), false);
       inputs_.late_ticks = std::max(inputs_.late_ticks, static_cast<std::uint32_t>(late));
       return;

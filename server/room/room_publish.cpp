@@ -111,6 +111,7 @@ void Room::begin_state(PeerId id, Peer& peer) {
   peer.next_frame = state->tick() + 1;
   peer.acked_tick = 0;
   peer.outbox.begin_state(state);
+  statistics_.encodes = states_.encodes() + feed_.encodes();
   if (peer.mode == protocol::Mode::kLockstep) return send_frames(id, peer);
   if (!delayed) feed_.keep(peer.profile, simulation_, *state);
 }

@@ -94,7 +94,7 @@ protocol::SeatFrame Room::close_seat(SeatHold& hold, std::uint64_t tick) {
   if (seat.origin == protocol::Origin::kGiven) {
     hold.missed = 0;
     inputs_.tight = inputs_.tight || early_ticks == 0u;
-  } else if (seat.origin != protocol::Origin::kAbsent) {
+  } else if (hold.window.spoke()) {
     ++hold.missed;
     hold.margin.on_missed();
     ++statistics_.inputs_replaced;

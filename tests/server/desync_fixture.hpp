@@ -11,8 +11,8 @@
 
 #include "client/replica/evidence.hpp"
 #include "client/replica/replica.hpp"
-#include "server/desync/inquiry.hpp"
 #include "server/desync/report.hpp"
+#include "server/desync/room_inquiry.hpp"
 #include "tests/server/room_fixture.hpp"
 
 namespace cycloid::server {
@@ -37,8 +37,8 @@ void change_state(scenes::Simulation& simulation, F&& f) {
   if (simulation.spatial() != nullptr) change(*simulation.spatial());
 }
 
-/// A real room and real replicas, joined by the bytes of the protocol, with the desk between them
-/// that a host puts there. The clients' inputs are those of the scene's script.
+/// A real room with its inquiry, and real replicas, joined by the bytes of the protocol. The
+/// clients' inputs are those of the scene's script.
 class DesyncTest : public testing::Test {
  protected:
   static constexpr std::int64_t kTickNs = 16'666'667;
@@ -58,14 +58,19 @@ class DesyncTest : public testing::Test {
     identity_.scene = std::make_shared<const scenes::Scene>(std::move(*loaded.scene));
     identity_.scene_digest = scenes::scene_digest(*identity_.scene);
     identity_.build = "server build";
-    desk_.emplace(options, std::make_shared<const RoomIdentity>(identity_));
-    shadow_.emplace(simulation_of(*identity_.scene));
-    desk_->start(*shadow_);
+    const scenes::Simulation start = simulation_of(*identity_.scene);
+    RoomInquiryHooks asking;
+    asking.now_ns = [this] { return now_; };
+    asking.publish = [this](const Finding& finding) {
+      findings_.push_back(finding);
+      return report_line(investigate(finding));
+    };
+    inquiry_.emplace(options, std::make_shared<const RoomIdentity>(identity_), start, asking);
     RoomOptions room;
     room.scene_digest = identity_.scene_digest;
     RoomHooks hooks;
     hooks.now_ns = [this] { return now_; };
-    hooks.log = &log_;
+    hooks.inquiry = &*inquiry_;
     room_.emplace(room, simulation_of(*identity_.scene), hooks);
     for (int i = 0; i < guests; ++i) join();
   }
@@ -80,6 +85,9 @@ class DesyncTest : public testing::Test {
     options.name = "guest";
     options.build = "client build";
     options.witness = std::make_shared<client::Evidence>();
+    options.on_notice = [this](const protocol::RoomNotice& notice) {
+      if (notice.kind == protocol::NoticeKind::kReport) notices_.push_back(notice.text);
+    };
     options.input = [scene = identity_.scene](int seat, std::uint64_t tick) {
       return scenes::scripted_input(*scene, seat, tick);
     };
@@ -93,15 +101,7 @@ class DesyncTest : public testing::Test {
   void tick() {
     now_ = room_->next_deadline_ns();
     room_->advance();
-    for (; seen_ < log_.ticks.size(); ++seen_) {
-      std::vector<scenes::SeatInput> inputs;
-      for (const auto& seat : log_.ticks[seen_].frame.seats) inputs.push_back(seat.input);
-      ASSERT_TRUE(shadow_->step(inputs).ok());
-      desk_->on_tick(log_.ticks[seen_].frame, log_.ticks[seen_].digest, *shadow_);
-    }
     exchange();
-    for (Finding& finding : desk_->take_findings(now_, guests_.size()))
-      findings_.push_back(std::move(finding));
   }
   void run_to(std::uint64_t tick_number) {
     while (room_->tick() < tick_number && !HasFatalFailure()) tick();
@@ -113,7 +113,8 @@ class DesyncTest : public testing::Test {
       for (Guest& guest : guests_) {
         for (const protocol::ClientMessage& message : std::exchange(guest.out, {})) {
           any = true;
-          if (!guest.instead || !guest.instead(message)) deliver(guest, message);
+          if (!guest.instead || !guest.instead(message))
+            room_->receive(guest.id, protocol::encode(message));
         }
         for (const Shared& bytes : room_->take_output(guest.id)) {
           any = true;
@@ -121,25 +122,6 @@ class DesyncTest : public testing::Test {
         }
       }
     }
-  }
-
-  /// From a client to the server: through the codec, past the desk, to the room.
-  void deliver(Guest& guest, const protocol::ClientMessage& message) {
-    const protocol::Bytes bytes = protocol::encode(message);
-    const auto decoded =
-        protocol::decode_client(std::span(bytes).subspan(protocol::Framer::kPrefixBytes));
-    ASSERT_TRUE(decoded.message) << decoded.error;
-    if (const auto* digest = std::get_if<protocol::Digest>(&*decoded.message)) {
-      desk_->on_digest(guest.id, digest->tick, digest->digest);
-      desk_->on_mismatch({guest.id, "guest", "client build", guest.replica->progress().seat},
-                         *digest, now_);
-    } else if (const auto* digests = std::get_if<protocol::TickDigests>(&*decoded.message)) {
-      if (const auto wanted = desk_->on_tick_digests(guest.id, *digests))
-        hear(guest, protocol::encode(protocol::ServerMessage(*wanted)));
-    } else if (const auto* part = std::get_if<protocol::StatePart>(&*decoded.message)) {
-      desk_->on_state_part(guest.id, *part);
-    }
-    room_->receive(guest.id, bytes);
   }
 
   static void hear(Guest& guest, const protocol::Bytes& bytes) {
@@ -163,13 +145,11 @@ class DesyncTest : public testing::Test {
 
   std::int64_t now_ = 1'000'000'000;
   RoomIdentity identity_;
-  std::optional<DesyncDesk> desk_;
-  std::optional<scenes::Simulation> shadow_;  ///< The room's world once more, for the desk.
-  MemoryLog log_;
-  std::size_t seen_ = 0;  ///< Of the log.
+  std::optional<RoomInquiry> inquiry_;
   std::optional<Room> room_;
   std::vector<Guest> guests_;
   std::vector<Finding> findings_;
+  std::vector<std::string> notices_;  ///< That clients were told of reports.
 };
 
 }  // namespace cycloid::server

@@ -97,7 +97,8 @@ TEST_P(DesyncFlip, OfOneBitIsNamedExactlyAndTheClientGoesOn) {
   expect_in_sync(guests_[0], 0);
   expect_in_sync(guests_[1], 1);
   EXPECT_EQ(findings_.size(), 1u);
-  EXPECT_EQ(desk_->held_bytes(), 0u);
+  EXPECT_THAT(notices_, testing::ElementsAre(report_line(report)));
+  EXPECT_EQ(inquiry_->desk().held_bytes(), 0u);
 }
 
 INSTANTIATE_TEST_SUITE_P(

@@ -73,6 +73,20 @@ class RoomWaits : public RoomInputs {
   }
 };
 
+/// From the first input on it is one to wait for, though that came too late.
+TEST_F(RoomWaits, WhoseInputsAreAllLateIsWaitedFor) {
+  open_waiting(3);
+  const PeerId id = enter(0);
+  run(2);
+  say(id, protocol::Input{1, push(1)});
+  pass(3 * kTickNs + kTickNs / 2);
+  EXPECT_EQ(room_->tick(), 2u);
+  EXPECT_EQ(only<protocol::InputFrame>(hear(id)).size(), 2u);
+  say(id, protocol::Input{3, push(1)});
+  pass(kTickNs / 4);
+  EXPECT_EQ(seat_of(3).origin, Origin::kGiven);
+}
+
 TEST_F(RoomWaits, ATickIsHeldForAMissingInputAndThenGoesOn) {
   open_waiting(3);
   const PeerId id = enter(0);

@@ -18,7 +18,7 @@ static const std::map<std::string, std::vector<std::string>> kAllowed = {
     {"protocol", {"solver/", "scenes/", "protocol/", "flatbuffers/"}},
     {"server",
      {"solver/", "scenes/", "protocol/", "transport/", "server/", "asio", "openssl/", "sodium.h",
-      "spdlog/", "fcntl.h", "unistd.h", "sys/", "signal.h"}},
+      "spdlog/", "nlohmann/", "fcntl.h", "unistd.h", "sys/", "signal.h"}},
     {"client", {"solver/", "scenes/", "protocol/", "transport/", "client/", "asio", "openssl/"}},
     {"transport", {"transport/", "asio", "openssl/"}},
     {"cli",

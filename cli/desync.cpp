@@ -1,0 +1,141 @@
+#include <filesystem>
+#include <iostream>
+#include <memory>
+#include <optional>
+#include <string>
+
+#include "cli/commands.hpp"
+#include "cli/log_file.hpp"
+#include "cli/output.hpp"
+#include "server/desync/report.hpp"
+
+namespace cycloid::cli {
+namespace {
+
+std::string text_file(const std::string& file) {
+  const std::vector<std::byte> bytes = read_file(file);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
+}
+
+/// The report as JSON, which `show` has found to be one.
+Json load_report(const std::string& file, std::string& shown) {
+  const std::string text = text_file(file);
+  std::string error;
+  const auto readable = server::report_as_text(text, error);
+  if (!readable) throw Failure(kExitCorrupt, file + ": " + error);
+  shown = *readable;
+  return Json::parse(text);
+}
+
+Exit show(const std::string& file, bool json) {
+  std::string shown;
+  Json report = load_report(file, shown);
+  if (json)
+    print_json(std::move(report), kExitGood);
+  else
+    std::cout << shown;
+  return kExitGood;
+}
+
+/// What this build makes of the tick of a report.
+struct Repeated {
+  std::uint64_t from_tick = 0;  ///< Of the state that the log begins with.
+  std::string digest;           ///< After the report's tick.
+};
+
+/// Steps the cut log from its first state to the tick.
+Repeated repeat_log(const std::string& file, std::uint64_t tick) {
+  const std::vector<std::byte> bytes = read_file(file);
+  const protocol::LogSummary summary = protocol::scan_log(bytes);
+  if (summary.state == protocol::LogState::kCorrupt)
+    throw Failure(kExitCorrupt, file + ": corrupt: " + summary.reason);
+  if (summary.state == protocol::LogState::kIncompatible)
+    throw Failure(kExitIncompatible, file + ": incompatible: " + summary.reason);
+  const scenes::Loaded loaded = scenes::from_binary(summary.header.scene);
+  if (!loaded.scene) throw Failure(kExitCorrupt, mistakes_text(file + ": scene", loaded.mistakes));
+  scenes::Simulation simulation = make_simulation(*loaded.scene, 1);
+  protocol::LogCursor cursor(bytes, summary.start);
+  Repeated repeated{summary.header.branch_tick, ""};
+  for (auto step = cursor.next(); step != protocol::LogCursor::Step::kEnd; step = cursor.next()) {
+    const bool begins = step == protocol::LogCursor::Step::kKeyframe &&
+                        cursor.keyframe().tick == summary.header.branch_tick;
+    if (begins) {
+      const solver::Error error = simulation.decode(cursor.keyframe().state);
+      if (!error.ok()) throw Failure(kExitCorrupt, file + ": keyframe: " + error_text(error));
+    }
+    if (step != protocol::LogCursor::Step::kTick) continue;
+    std::vector<scenes::SeatInput> inputs;
+    for (const protocol::SeatFrame& seat : cursor.tick().frame.seats) inputs.push_back(seat.input);
+    const solver::Error error = simulation.step(inputs);
+    if (!error.ok()) {
+      throw Failure(kExitDiverged, file + ": the world does not step to tick " +
+                                       std::to_string(cursor.tick().frame.tick) + ": " +
+                                       error_text(error));
+    }
+    if (simulation.tick() != tick) continue;
+    repeated.digest = hex16(simulation.digest());
+    return repeated;
+  }
+  throw Failure(kExitCorrupt, file + ": has no tick " + std::to_string(tick));
+}
+
+Exit repeat(const std::string& file, bool json) {
+  std::string shown;
+  const Json report = load_report(file, shown);
+  if (report.at("log").is_null()) {
+    throw Failure(kExitIo, file + ": has no log: " + report.at("log_reason").get<std::string>());
+  }
+  // A name from a file: beside the report, and nowhere else.
+  const auto name = std::filesystem::path(report.at("log").get<std::string>()).filename();
+  const std::string log = (std::filesystem::path(file).parent_path() / name).string();
+  const auto tick = report.at("tick").get<std::uint64_t>();
+  const Repeated repeated = repeat_log(log, tick);
+  const auto server = report.at("server").at("digest").get<std::string>();
+  const auto client = report.at("client").at("digest").get<std::string>();
+  const char* agrees = repeated.digest == server   ? "server"
+                       : repeated.digest == client ? "client"
+                                                   : "neither";
+  const Exit exit = repeated.digest == server ? kExitGood : kExitDiverged;
+  if (json) {
+    print_json({{"tick", tick},
+                {"from_tick", repeated.from_tick},
+                {"digest", repeated.digest},
+                {"server", server},
+                {"client", client},
+                {"agrees_with", agrees}},
+               exit);
+    return exit;
+  }
+  std::cout << "tick " << tick << ", made again from tick " << repeated.from_tick << ":\n  "
+            << repeated.digest << "  this program\n  " << server << "  the server\n  " << client
+            << "  the client\n";
+  if (repeated.digest == server) {
+    std::cout << "this build agrees with the server\n";
+  } else if (repeated.digest == client) {
+    std::cout << "this build agrees with the client; to go on: cycloid bisect " << log
+              << " --against PROGRAM, with the server's cycloid\n";
+  } else {
+    std::cout << "this build agrees with neither\n";
+  }
+  return exit;
+}
+
+}  // namespace
+
+void add_desync(CLI::App& app, Action& action) {
+  CLI::App* command = app.add_subcommand("desync", "Read and repeat what a server reports of one");
+  command->require_subcommand(1);
+  command->footer(kExitCodesText);
+  const auto add = [&](const char* name, const char* summary,
+                       Exit (*run)(const std::string&, bool)) {
+    auto file = std::make_shared<std::string>();
+    CLI::App* verb = add_command(*command, name, summary, action);
+    verb->add_option("REPORT", *file, "A desync-....json; its log lies beside it")->required();
+    verb->callback([=, &action] { action.run = [=, &action] { return run(*file, action.json); }; });
+  };
+  add("show", "Print a report as text", &show);
+  add("repeat", "Make its tick again with this build: 0 as the server, 1 as the client or neither",
+      &repeat);
+}
+
+}  // namespace cycloid::cli
