@@ -25,7 +25,8 @@ class LogCommand : public testing::Test {
     const Ran ran = run_program({"run", "half-pipe", "--ticks", "120", "--digest-every", "1",
                                  "--keyframe-every", "20", "--log", log_, "--json"});
     EXPECT_EQ(ran.exit, 0) << ran.err;
-    for (const auto& line : ran.json()["digests"]) digests_.push_back(line["digest"]);
+    const nlohmann::json json = ran.json();
+    for (const auto& line : json["digests"]) digests_.push_back(line["digest"]);
   }
   const std::string& digest(std::uint64_t tick) const { return digests_.at(tick - 1); }
   /// Damage in the block of ticks, with good ones behind.

@@ -42,7 +42,8 @@ class ShardedVerify : public testing::Test {
 
   std::set<std::string> logs_of(const Ran& ran) const {
     std::set<std::string> logs;
-    for (const auto& log : ran.json()["logs"]) logs.insert(log["log"].get<std::string>());
+    const nlohmann::json json = ran.json();
+    for (const auto& log : json["logs"]) logs.insert(log["log"].get<std::string>());
     return logs;
   }
 
