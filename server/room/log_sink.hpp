@@ -32,9 +32,11 @@ class LogSink {
                         std::span<const std::byte> state) {
     (void)tick, (void)digest, (void)state;
   }
-  /// The match goes on from after this earlier tick, whose digest this is: the next tick to be
-  /// handed over is tick + 1, and those after it that were handed over before are another branch.
-  virtual void branch(std::uint64_t tick, std::uint64_t digest) { (void)tick, (void)digest; }
+  /// The match goes on from after this earlier tick, which left this exact state: the next tick to
+  /// be handed over is the one after it, and what was handed over behind it is another branch.
+  virtual void branch(const protocol::LogTick& from, std::span<const std::byte> state) {
+    (void)from, (void)state;
+  }
   /// False once a tick could not be kept; never true again.
   virtual bool durable() const = 0;
   virtual std::string error() const = 0;
