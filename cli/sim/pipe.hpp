@@ -96,12 +96,22 @@ struct Wire {
     reset_at_ns = kNever;
   }
 
+  /// Its time may have come.
+  void step(Chronicle& chronicle) {
+    if (chronicle.now_ns < reset_at_ns || up.is_reset()) return;
+    reset();
+    chronicle.count(Event::kReset);
+  }
+
   Pipe up;
   Pipe down;
+  bool flips_up = false;
+  bool flips_down = false;
   std::int64_t reset_at_ns = kNever;
   std::uint64_t number = 0;  ///< Of this connection in the run.
   std::size_t room = 0;
-  std::size_t era = 0;  ///< Of the room that accepted it; see Host.
+  std::size_t era = 0;     ///< Of the room that accepted it; see RoomHost.
+  bool unwelcome = false;  ///< Its peer says nothing that a room may take for a hello.
 };
 
 }  // namespace cycloid::sim
