@@ -50,10 +50,8 @@ void SimClient::dial() {
   wire_->number = chronicle_->counted(Event::kConnection);
   host_->accept(wire_);
   RoomHost& room = host_->room(persona_.room);
-  if (wire_->flips_up) {
-    room.ledger(wire_->era).excuse_inputs();
-    room.excuse_desyncs();
-  }
+  if (wire_->flips_up) room.ledger(wire_->era).excuse_inputs();
+  if (wire_->flips_up || wire_->flips_down) room.excuse_desyncs();
   observer_.emplace(room.ledger(wire_->era), persona_.name, *chronicle_);
   framer_.emplace(protocol::kServerMessageBytesMax);
   chronicle_->note(persona_.name + " connects: connection " + std::to_string(wire_->number));
@@ -120,6 +118,7 @@ void SimClient::make_mischief() {
     return;
   }
   if (now < mischief_.leave_ns || !running) return;
+  mischief_.leave_ns = kNever;
   chronicle_->count(Event::kLeave);
   outbox_.emplace_back(protocol::Bye{"enough"});
   send();
@@ -202,7 +201,7 @@ void SimClient::take(const protocol::ServerMessage& message) {
     if (code == protocol::Refusal::kTooSlow) chronicle_->count(Event::kSlowPeerDropped);
     if (fault && wire_->up.flips() == 0) blame("is refused: " + progress.reason);
   }
-  ended_ = progress.phase == client::Phase::kEnded && chronicle_->quiet;
+  ended_ = progress.phase == client::Phase::kEnded && host_->draining();
   finish(progress.reason);
 }
 
@@ -210,7 +209,10 @@ void SimClient::take_planted(protocol::ServerMessage message) {
   constexpr std::uint64_t kSkipped = 20;
   auto* frame = std::get_if<protocol::InputFrame>(&message);
   const client::Progress& progress = follower_->progress();
-  if (frame != nullptr && planted(Plant::kClientSkipsFrame) && progress.frames == kSkipped) return;
+  if (frame != nullptr && planted(Plant::kClientSkipsFrame) &&
+      frame->tick == progress.first_tick + kSkipped) {
+    return;
+  }
   if (frame != nullptr && planted(Plant::kClientAppliesLateInput) && progress.seat >= 0) {
     protocol::SeatFrame& mine = frame->seats[static_cast<std::size_t>(progress.seat)];
     if (mine.origin != protocol::Origin::kGiven) {
@@ -310,12 +312,17 @@ void SimClient::calm() {
 }
 
 std::string SimClient::lacks() const {
-  if (!wire_ || farewell_until_ns_ != kNever) return "has no connection";
+  const RoomHost& room = host_->room(persona_.room);
+  if (!host_->listens(persona_.room)) return "has no server";
+  const bool connected = wire_ && !wire_->down.is_reset() && wire_->era == room.era() &&
+                         !wire_->up.is_lost() && !wire_->down.is_lost();
+  if (!connected || farewell_until_ns_ != kNever) return "has no connection";
   const client::Progress& progress = follower_->progress();
   if (progress.phase != client::Phase::kRunning) return "has no state yet";
   if (observer_->disturbed()) return "is desynced";
-  if (observer_->verified_tick() != progress.last_tick) return "holds a state that was not found right";
-  const std::uint64_t made = host_->room(persona_.room).tick();
+  if (observer_->verified_tick() != progress.last_tick)
+    return "holds a state that was not found right";
+  const std::uint64_t made = room.tick();
   const std::uint64_t most = 4 + (lockstep() ? 0 : settings_->limits.snapshot_ticks);
   if (progress.last_tick + most >= made) return "";
   return "is at tick " + std::to_string(progress.last_tick) + " of " + std::to_string(made);

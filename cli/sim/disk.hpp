@@ -59,7 +59,10 @@ class Disk {
   /// What a machine finds when it comes up again: part of what was not synced may be gone.
   void restart(Death death);
   /// No new fault from now on, and room for all that comes.
-  void calm() { faults_ = {}; }
+  void calm() {
+    faults_ = {};
+    stalled_until_ns_ = 0;
+  }
   /// Room is made, as an operator would.
   void enlarge() { faults_.capacity_bytes = 0; }
 

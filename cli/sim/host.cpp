@@ -75,7 +75,7 @@ void RoomHost::step(std::int64_t step_ns) {
   log_->work();
   check_seats();
   check_room();
-  if (room_->tick() >= next_check_tick_ && running()) {
+  if (room_->tick() >= next_check_tick_ && running() && !disk_->killed()) {
     next_check_tick_ += kCheckTicks;
     check_log({});
   }

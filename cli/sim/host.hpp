@@ -95,8 +95,9 @@ class Host {
   void step(std::int64_t step_ns);
   void calm();
   void drain();
+  bool draining() const { return draining_; }
 
-  /// Nothing where nobody listens.
+  /// Whether somebody would accept a connection to the room.
   bool listens(std::size_t room) const {
     return up_ && !paused() && !draining_ && rooms_[room].running();
   }

@@ -48,8 +48,22 @@ void Ledger::add(const protocol::LogTick& tick) {
   for (std::size_t seat = 0; seat < frame.seats.size(); ++seat) {
     check_seat(frame.tick, seat, frame.seats[seat]);
   }
+  mix(tick);
   ticks_.push_back(tick);
-  chronicle_->mix(tick.digest);
+}
+
+void Ledger::mix(const protocol::LogTick& tick) {
+  const auto fold = [this](std::uint64_t value) { digest_ = scramble(digest_ ^ value); };
+  fold(tick.digest);
+  for (const protocol::SeatFrame& seat : tick.frame.seats) {
+    fold(static_cast<std::uint64_t>(seat.origin));
+    for (const std::int16_t axis : seat.input.axes) fold(static_cast<std::uint16_t>(axis));
+    fold(seat.input.buttons);
+  }
+  for (const protocol::FrameEvent& event : tick.frame.events) {
+    fold((static_cast<std::uint64_t>(event.kind) << 32) | event.seat);
+  }
+  chronicle_->mix(digest_);
 }
 
 void Ledger::check_event(std::uint64_t tick, const protocol::FrameEvent& event) {

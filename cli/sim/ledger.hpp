@@ -28,6 +28,7 @@ class Ledger {
   void add(const protocol::LogTick& tick);
 
   std::uint64_t ticks() const { return ticks_.size(); }
+  std::uint64_t digest() const { return digest_; }  ///< Of all frames and digests.
   /// Null where it is not confirmed.
   const protocol::LogTick* at(std::uint64_t tick) const {
     return tick == 0 || tick > ticks_.size() ? nullptr : &ticks_[tick - 1];
@@ -41,6 +42,7 @@ class Ledger {
   std::optional<std::string> not_replayable(scenes::Simulation fresh) const;
 
  private:
+  void mix(const protocol::LogTick& tick);
   void check_seat(std::uint64_t tick, std::size_t seat, const protocol::SeatFrame& said);
   void check_event(std::uint64_t tick, const protocol::FrameEvent& event);
 
@@ -49,6 +51,7 @@ class Ledger {
   std::vector<protocol::LogTick> ticks_;
   std::vector<bool> held_;                     ///< By seat.
   std::vector<scenes::SeatInput> last_given_;  ///< By seat, of its holder.
+  std::uint64_t digest_ = 0;
   bool inputs_excused_ = false;
 };
 

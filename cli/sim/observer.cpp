@@ -1,6 +1,5 @@
 #include "cli/sim/observer.hpp"
 
-#include <utility>
 #include <variant>
 
 namespace cycloid::sim {
@@ -55,7 +54,7 @@ void Observer::on_frame(const protocol::InputFrame& frame) {
 
 void Observer::check_state(const client::Follower& follower) {
   const client::Progress& progress = follower.progress();
-  if (excused_ || disturbed_ || progress.phase != client::Phase::kRunning) return;
+  if (excused_ || progress.phase != client::Phase::kRunning) return;
   const std::uint64_t tick = progress.last_tick;
   if (tick == verified_tick_ || tick == 0 || follower.simulation().tick() != tick) return;
   const protocol::LogTick* confirmed = ledger_->at(tick);
@@ -64,9 +63,11 @@ void Observer::check_state(const client::Follower& follower) {
                  "is at tick " + std::to_string(tick) + ", which is not confirmed");
   }
   if (follower.simulation().digest() != confirmed->digest) {
+    if (disturbed_) return;
     return wrong(Invariant::kDigests,
                  "its state of tick " + std::to_string(tick) + " is not the server's");
   }
+  disturbed_ = false;  // What one bit did may also die out.
   verified_tick_ = tick;
 }
 

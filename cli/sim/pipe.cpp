@@ -85,13 +85,17 @@ std::span<const std::byte> Pipe::read(std::size_t bytes_max) {
 }
 
 void Pipe::calm() {
-  const bool lost = chronicle_->now_ns >= faults_.blackhole_from_ns;
+  const std::int64_t now = chronicle_->now_ns;
   PipeFaults none;
   none.capacity_bytes = std::max(none.capacity_bytes, faults_.capacity_bytes);
-  if (lost) {
-    none.blackhole_from_ns = faults_.blackhole_from_ns;
-    none.blackhole_until_ns = faults_.blackhole_until_ns;
-  }
+  if (is_lost()) none.blackhole_from_ns = faults_.blackhole_from_ns;
+  const auto soon = [&](std::int64_t& at_ns) {
+    if (at_ns != kNever) at_ns = std::min(at_ns, now + none.latency_ns);
+  };
+  for (Segment& segment : segments_) soon(segment.at_ns);
+  soon(last_ns_);
+  soon(free_ns_);
+  soon(end_ns_);
   faults_ = none;
 }
 

@@ -50,12 +50,15 @@ class Pipe {
   std::span<const std::byte> read(std::size_t bytes_max);
   bool at_end() const { return finished_ && segments_.empty() && chronicle_->now_ns >= end_ns_; }
   bool is_reset() const { return reset_; }
-  bool finished() const { return finished_; }
+  /// Nothing that is written will ever come.
+  bool is_lost() const {
+    return chronicle_->now_ns >= faults_.blackhole_from_ns && faults_.blackhole_until_ns == kNever;
+  }
   std::size_t held_bytes() const { return buffer_.size() - begin_; }
   std::uint64_t flips() const { return flips_; }
 
-  /// No new fault from now on. A blackhole that has begun and has no end stays one: nothing mends
-  /// that connection but giving it up.
+  /// No fault from now on, and what is on the way comes at once. But a blackhole that has begun and
+  /// has no end stays one: nothing mends that connection but giving it up.
   void calm();
 
  private:

@@ -43,7 +43,7 @@ class World {
     report.violation = chronicle_.violation();
     report.digest = chronicle_.digest();
     report.virtual_ns = chronicle_.now_ns;
-    for (std::size_t room = 0; room < host_.rooms(); ++room) report.ticks += ticks_of(room);
+    for (std::size_t room = 0; room < host_.rooms(); ++room) add_room(room, report);
     report.chronicle = chronicle_;
     return report;
   }
@@ -151,12 +151,12 @@ class World {
     }
   }
 
-  std::uint64_t ticks_of(std::size_t room) {
-    std::uint64_t ticks = 0;
+  void add_room(std::size_t room, SimReport& report) {
     for (std::size_t era = 0; era < host_.room(room).eras(); ++era) {
-      ticks += host_.room(room).ledger(era).ticks();
+      const Ledger& ledger = host_.room(room).ledger(era);
+      report.ticks += ledger.ticks();
+      report.confirmed = scramble(report.confirmed ^ ledger.digest());
     }
-    return ticks;
   }
 
   Settings settings_;
