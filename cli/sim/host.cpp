@@ -10,6 +10,8 @@ namespace {
 
 /// Between two reads of a log that is still written.
 constexpr std::uint64_t kCheckTicks = 150;
+/// From the end of a room to the next start of the server.
+constexpr std::int64_t kStopNs = 3 * kSecond / 2;
 
 scenes::Simulation simulation_of(const scenes::Scene& scene) {
   return std::move(scenes::Simulation::create(scene).value());
@@ -40,6 +42,9 @@ server::RoomOptions RoomHost::room_options() const {
 }
 
 void RoomHost::open() {
+  for (Session& session : sessions_) session.die();
+  sessions_.clear();
+  over_at_ns_ = kNever;
   ledgers_.push_back(std::make_unique<Ledger>(settings_->seed, *chronicle_));
   desyncs_excused_ = false;
   protocol::LogHeader header;
@@ -72,6 +77,7 @@ void RoomHost::step(std::int64_t step_ns) {
   for (Session& session : sessions_) session.step(step_ns);
   sessions_.remove_if([](const Session& session) { return session.closed(); });
   if (running() && chronicle_->now_ns >= room_->next_deadline_ns()) room_->advance();
+  if (!running() && over_at_ns_ == kNever) over_at_ns_ = chronicle_->now_ns + kStopNs;
   log_->work();
   check_seats();
   check_room();

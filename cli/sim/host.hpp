@@ -35,7 +35,8 @@ class RoomHost {
   void die(Death death);
 
   bool running() const { return room_ && room_->state() == server::RoomState::kRunning; }
-  bool over() const { return room_ && !running() && sessions_.empty(); }
+  /// The room has ended by itself, and all had time to be told: whoever stays makes no difference.
+  bool over() const { return room_ && !running() && chronicle_->now_ns >= over_at_ns_; }
   std::uint64_t tick() const { return room_ ? room_->tick() : 0; }
   std::size_t eras() const { return ledgers_.size(); }
   std::size_t era() const { return ledgers_.size() - 1; }
@@ -83,6 +84,7 @@ class RoomHost {
   std::unique_ptr<server::Room> room_;
   std::list<Session> sessions_;
   std::uint64_t next_check_tick_ = 0;
+  std::int64_t over_at_ns_ = kNever;
   bool desyncs_excused_ = false;
 };
 

@@ -69,11 +69,15 @@ class World {
       clients_.emplace_back(settings_, scene_, persona, root_.fork(base + 100 + i), host_,
                             chronicle_);
     }
-    for (std::uint32_t i = 0; i < settings_.hostiles + settings_.troublemakers; ++i) {
-      const bool stranger = i < settings_.hostiles;
-      hostiles_.emplace_back(settings_, scene_,
-                             stranger ? Hostile::Kind::kStranger : Hostile::Kind::kTroublemaker,
-                             room, root_.fork(base + 500 + i), host_, chronicle_);
+    const auto trouble = [&](Hostile::Kind kind, std::uint64_t name) {
+      hostiles_.emplace_back(settings_, scene_, kind, room, root_.fork(base + name), host_,
+                             chronicle_);
+    };
+    for (std::uint32_t i = 0; i < settings_.hostiles; ++i) {
+      trouble(Hostile::Kind::kStranger, 500 + i);
+    }
+    for (std::uint32_t i = 0; i < settings_.troublemakers; ++i) {
+      trouble(Hostile::Kind::kTroublemaker, 700 + i);
     }
   }
 

@@ -92,7 +92,6 @@ TEST(SimWorld, ConfirmsTheSameWithStrangersAsWithout) {
     EXPECT_EQ(failure_of(beset), "");
     EXPECT_EQ(alone.confirmed, beset.confirmed) << seed;
     EXPECT_EQ(alone.ticks, beset.ticks) << seed;
-    EXPECT_NE(alone.digest, beset.digest) << seed;
     refusals += beset.chronicle.counted(Event::kRefusal);
   }
   EXPECT_GT(refusals, 100u);
