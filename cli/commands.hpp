@@ -46,5 +46,6 @@ void add_synctest(CLI::App& app, Action& action);
 void add_demo(CLI::App& app, Action& action);
 void add_token(CLI::App& app, Action& action);
 void add_desync(CLI::App& app, Action& action);
+void add_sim(CLI::App& app, Action& action);
 
 }  // namespace cycloid::cli

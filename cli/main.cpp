@@ -47,6 +47,7 @@ static Exit parse_and_run(int argc, char** argv) {
   add_demo(app, action);
   add_token(app, action);
   add_desync(app, action);
+  add_sim(app, action);
 #endif
   add_run(app, action);
   add_replay(app, action);

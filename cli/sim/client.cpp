@@ -1,0 +1,228 @@
+#include "cli/sim/client.hpp"
+
+#include <algorithm>
+#include <utility>
+#include <variant>
+
+#include "client/replica/replica.hpp"
+#include "client/replica/thin.hpp"
+#include "scenes/catalogue.hpp"
+
+namespace cycloid::sim {
+namespace {
+
+constexpr std::int64_t kFarewellNs = kSecond;
+constexpr std::size_t kUnsentBytesMax = std::size_t{1} << 20;
+constexpr std::size_t kReadBytes = 16384;
+
+}  // namespace
+
+SimClient::SimClient(const Settings& settings, const scenes::Scene& scene, Persona persona,
+                     Random random, Host& host, Chronicle& chronicle)
+    : settings_(&settings),
+      scene_(&scene),
+      persona_(std::move(persona)),
+      random_(random),
+      host_(&host),
+      chronicle_(&chronicle),
+      scene_digest_(scenes::scene_digest(scene)) {
+  const std::int64_t drift = settings.client.drift_max_ppm;
+  drift_ppm_ = random_.between(-drift, drift);
+  dial_at_ns_ = random_.between(0, kSecond);
+}
+
+void SimClient::step() {
+  for (const auto& ghost : ghosts_) ghost->step(*chronicle_);
+  if (wire_) wire_->step(*chronicle_);
+  if (!wire_ && !ended_ && chronicle_->now_ns >= dial_at_ns_) dial();
+  if (wire_) make_mischief();
+  if (wire_) read();
+  if (wire_) look_at_the_clock();
+  if (wire_) send();
+}
+
+void SimClient::dial() {
+  dial_at_ns_ = chronicle_->now_ns + random_.between(100, 1'000) * kMillisecond;
+  if (!host_->listens(persona_.room)) return;
+  wire_ = make_wire(settings_->network, random_, *chronicle_);
+  wire_->room = persona_.room;
+  wire_->number = chronicle_->counted(Event::kConnection);
+  host_->accept(wire_);
+  RoomHost& room = host_->room(persona_.room);
+  if (wire_->flips_up) room.ledger(wire_->era).excuse_inputs();
+  if (wire_->flips_up || wire_->flips_down) room.excuse_desyncs();
+  observer_.emplace(room.ledger(wire_->era), persona_.name, *chronicle_);
+  framer_.emplace(protocol::kServerMessageBytesMax);
+  chronicle_->note(persona_.name + " connects: connection " + std::to_string(wire_->number));
+  unsent_.clear();
+  outbox_.clear();
+  farewell_until_ns_ = kNever;
+  heard_local_ns_ = pinged_local_ns_ = local_ns();
+  mismatches_ = 0;
+  draw_mischief();
+  make_follower();
+  follower_->greet(outbox_);
+}
+
+void SimClient::make_follower() {
+  client::FollowerOptions options;
+  options.scene_digest = scene_digest_;
+  options.seat_wish = persona_.seat_wish;
+  options.name = persona_.name;
+  options.input = [this](int seat, std::uint64_t tick) {
+    return honest_input(settings_->seed, seat, tick);
+  };
+  auto simulation = std::move(scenes::Simulation::create(*scene_).value());
+  if (lockstep()) {
+    follower_ = std::make_unique<client::Replica>(std::move(simulation), std::move(options));
+  } else {
+    follower_ = std::make_unique<client::Thin>(std::move(simulation), std::move(options));
+  }
+}
+
+void SimClient::read() {
+  const std::int64_t now = chronicle_->now_ns;
+  if (now >= mischief_.zero_window_ns && now < mischief_.zero_window_until_ns) return;
+  if (mischief_.zero_window_ns != kNever && now >= mischief_.zero_window_until_ns) {
+    chronicle_->count(Event::kZeroWindow);
+    mischief_.zero_window_ns = kNever;
+  }
+  for (;;) {
+    if (wire_->down.is_reset()) return leave("its connection is reset");
+    const auto bytes = wire_->down.read(kReadBytes);
+    if (bytes.empty()) break;
+    heard_local_ns_ = local_ns();
+    chronicle_->mix(bytes.size() ^ static_cast<std::uint64_t>(now));
+    if (wire_->down.flips() != 0) observer_->excuse();
+    (void)framer_->feed(bytes);
+    while (const auto payload = framer_->next()) {
+      const auto decoded = protocol::decode_server(*payload);
+      if (!decoded.message) {
+        blame("hears what is no message: " + decoded.error);
+        return leave("hears what is no message");
+      }
+      if (farewell_until_ns_ == kNever) take(*decoded.message);
+      if (!wire_) return;
+    }
+    if (framer_->broken()) {
+      blame("hears of a message of " + std::to_string(framer_->announced_bytes()) + " bytes");
+      return leave("hears of a message of a wrong size");
+    }
+  }
+  if (wire_->down.at_end()) leave("the server hung up");
+}
+
+void SimClient::take(const protocol::ServerMessage& message) {
+  observer_->heard(message);
+  const std::uint64_t snapshots = follower_->progress().snapshots;
+  if (settings_->plant == Plant::kNone) {
+    follower_->receive(message, outbox_);
+  } else {
+    take_planted(message);
+  }
+  check_after(snapshots);
+  const client::Progress& progress = follower_->progress();
+  if (!progress.over()) return;
+  if (progress.phase == client::Phase::kFailed) blame("fails: " + progress.reason);
+  if (progress.refused) {
+    const protocol::Refusal code = progress.refused->code;
+    const bool fault =
+        code == protocol::Refusal::kBadMessage || code == protocol::Refusal::kTooLarge ||
+        code == protocol::Refusal::kProtocolVersion || code == protocol::Refusal::kSolverVersion ||
+        code == protocol::Refusal::kSceneDigest || code == protocol::Refusal::kNoSuchSeat;
+    if (code == protocol::Refusal::kTooSlow) chronicle_->count(Event::kSlowPeerDropped);
+    if (fault && wire_->up.flips() == 0) blame("is refused: " + progress.reason);
+  }
+  ended_ = progress.phase == client::Phase::kEnded && host_->draining();
+  finish(progress.reason);
+}
+
+void SimClient::check_after(std::uint64_t snapshots_before) {
+  const client::Progress& progress = follower_->progress();
+  if (progress.snapshots != snapshots_before && observer_->disturbed()) {
+    observer_->mended();
+    chronicle_->count(Event::kResync);
+  }
+  if (progress.mismatches != mismatches_ && !observer_->disturbed()) {
+    blame("is told another digest than its own");
+  }
+  mismatches_ = progress.mismatches;
+  observer_->check_state(*follower_);
+}
+
+void SimClient::send() {
+  for (const protocol::ClientMessage& message : outbox_) {
+    const protocol::Bytes bytes = protocol::encode(message);
+    unsent_.insert(unsent_.end(), bytes.begin(), bytes.end());
+  }
+  outbox_.clear();
+  const std::size_t sent = wire_->up.write(unsent_);
+  unsent_.erase(unsent_.begin(), unsent_.begin() + static_cast<std::ptrdiff_t>(sent));
+  if (unsent_.size() > kUnsentBytesMax) {
+    chronicle_->violate(Invariant::kQueues, persona_.name + " has more than 1 MiB to say");
+  }
+  if (farewell_until_ns_ != kNever && unsent_.empty()) wire_->up.finish();
+}
+
+void SimClient::look_at_the_clock() {
+  if (chronicle_->now_ns >= farewell_until_ns_) return leave("its farewell took too long");
+  if (farewell_until_ns_ != kNever) return;
+  if (local_ns() - heard_local_ns_ > settings_->client.silence_ns) {
+    return leave("the server fell silent");
+  }
+  if (local_ns() - pinged_local_ns_ < settings_->client.ping_ns) return;
+  pinged_local_ns_ = local_ns();
+  follower_->ping(outbox_);
+}
+
+/// Says no more, and waits for the server to hang up.
+void SimClient::finish(const std::string& why) {
+  if (farewell_until_ns_ != kNever) return;
+  chronicle_->note(persona_.name + " ends: " + why);
+  farewell_until_ns_ = chronicle_->now_ns + kFarewellNs;
+}
+
+void SimClient::leave(const std::string& why) {
+  chronicle_->note(persona_.name + " is without connection: " + why);
+  wire_->reset();
+  wire_ = nullptr;
+  dial_at_ns_ = chronicle_->now_ns + random_.between(50, 1'500) * kMillisecond;
+}
+
+void SimClient::blame(const std::string& what) {
+  const bool damaged = observer_->excused() || wire_->up.flips() != 0;
+  if (!damaged) chronicle_->violate(Invariant::kHonesty, persona_.name + " " + what);
+}
+
+void SimClient::storm() {
+  if (wire_) leave("a storm");
+  dial_at_ns_ = 0;
+}
+
+void SimClient::calm() {
+  for (const auto& ghost : ghosts_) ghost->reset();
+  ghosts_.clear();
+  mischief_ = {};
+  if (!wire_) return;
+  wire_->calm();
+  if (wire_->flips_up || wire_->flips_down) leave("nothing is owed to a damaged connection");
+}
+
+std::string SimClient::lacks() const {
+  const RoomHost& room = host_->room(persona_.room);
+  if (!host_->listens(persona_.room)) return "has no server";
+  const bool connected = wire_ && !wire_->down.is_reset() && wire_->era == room.era() &&
+                         !wire_->up.is_lost() && !wire_->down.is_lost();
+  if (!connected || farewell_until_ns_ != kNever) return "has no connection";
+  const client::Progress& progress = follower_->progress();
+  if (progress.phase != client::Phase::kRunning) return "has no state yet";
+  if (observer_->disturbed()) return "is desynced";
+  if (observer_->verified_tick() != progress.last_tick)
+    return "holds a state that was not found right";
+  const std::uint64_t made = room.tick();
+  const std::uint64_t most = 4 + (lockstep() ? 0 : settings_->limits.snapshot_ticks);
+  if (progress.last_tick + most >= made) return "";
+  return "is at tick " + std::to_string(progress.last_tick) + " of " + std::to_string(made);
+}
+
+}  // namespace cycloid::sim

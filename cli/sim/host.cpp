@@ -1,0 +1,238 @@
+#include "cli/sim/host.hpp"
+
+#include <algorithm>
+#include <functional>
+#include <set>
+#include <utility>
+
+namespace cycloid::sim {
+namespace {
+
+/// Between two reads of a log that is still written.
+constexpr std::uint64_t kCheckTicks = 150;
+/// From the end of a room to the next start of the server.
+constexpr std::int64_t kStopNs = 3 * kSecond / 2;
+
+scenes::Simulation simulation_of(const scenes::Scene& scene) {
+  return std::move(scenes::Simulation::create(scene).value());
+}
+
+}  // namespace
+
+RoomHost::RoomHost(const Settings& settings, const scenes::Scene& scene, std::size_t number,
+                   Disk& disk, Chronicle& chronicle)
+    : settings_(&settings),
+      scene_(&scene),
+      number_(number),
+      disk_(&disk),
+      chronicle_(&chronicle),
+      scene_digest_(scenes::scene_digest(scene)),
+      scene_bytes_(scenes::to_binary(scene)) {}
+
+server::RoomOptions RoomHost::room_options() const {
+  server::RoomOptions options;
+  options.limits = settings_->limits;
+  if (settings_->plant == Plant::kRoomOutboxUnbounded) {
+    options.limits.queue_bytes_max = std::size_t{1} << 30;
+  }
+  options.scene_digest = scene_digest_;
+  options.tick_rate_millihertz = settings_->tick_rate_millihertz;
+  options.stop_on_log_error = settings_->server.stop_on_log_error;
+  return options;
+}
+
+void RoomHost::open() {
+  for (Session& session : sessions_) session.die();
+  sessions_.clear();
+  over_at_ns_ = kNever;
+  ledgers_.push_back(std::make_unique<Ledger>(settings_->seed, *chronicle_));
+  desyncs_excused_ = false;
+  protocol::LogHeader header;
+  header.scene_digest = scene_digest_;
+  header.salt = scramble(settings_->seed ^ scramble(number_ * 1000 + era()));
+  header.scene_name = scene_->name;
+  header.scene = scene_bytes_;
+  const ServerSettings& server = settings_->server;
+  const SimLog::Options options{server.log, server.sync_interval_ns, server.log_queue_bytes_max,
+                                settings_->plant};
+  log_ = std::make_unique<SimLog>(*disk_, number_ * 1000 + era(), header, options, *chronicle_);
+  confirm_ = std::make_unique<Confirm>(*ledgers_.back(), *log_);
+  server::RoomHooks hooks;
+  hooks.now_ns = [this] { return chronicle_->now_ns; };
+  hooks.notice = [this](const server::Notice& notice) {
+    chronicle_->note("room " + std::to_string(number_) + ": " + notice.text);
+  };
+  hooks.log = confirm_.get();
+  room_ = std::make_unique<server::Room>(room_options(), simulation_of(*scene_), std::move(hooks));
+  next_check_tick_ = kCheckTicks;
+}
+
+void RoomHost::accept(std::shared_ptr<Wire> wire) {
+  wire->era = era();
+  sessions_.emplace_back(std::move(wire), *room_, settings_->limits, settings_->plant, *chronicle_);
+}
+
+void RoomHost::step(std::int64_t step_ns) {
+  if (!room_) return;
+  for (Session& session : sessions_) session.step(step_ns);
+  sessions_.remove_if([](const Session& session) { return session.closed(); });
+  if (running() && chronicle_->now_ns >= room_->next_deadline_ns()) room_->advance();
+  if (!running() && over_at_ns_ == kNever) over_at_ns_ = chronicle_->now_ns + kStopNs;
+  log_->work();
+  check_seats();
+  check_room();
+  if (room_->tick() >= next_check_tick_ && running() && !disk_->killed()) {
+    next_check_tick_ += kCheckTicks;
+    check_log({});
+  }
+}
+
+void RoomHost::check_seats() {
+  std::set<std::int32_t> held;
+  for (const Session& session : sessions_) {
+    if (session.seat() < 0 || held.insert(session.seat()).second) continue;
+    chronicle_->violate(Invariant::kSeats,
+                        "seat " + std::to_string(session.seat()) + " is held by two connections");
+  }
+}
+
+void RoomHost::check_room() {
+  if (room_->tick() != ledgers_.back()->ticks()) {
+    chronicle_->violate(Invariant::kLog, "the room is at tick " + std::to_string(room_->tick()) +
+                                             ", its log heard of " +
+                                             std::to_string(ledgers_.back()->ticks()));
+  }
+  if (room_->statistics().desyncs != 0 && !desyncs_excused_) {
+    chronicle_->violate(Invariant::kHonesty, "the room takes an honest client for desynced");
+  }
+  const bool each = settings_->server.log == LogMode::kEveryTick;
+  if (each && settings_->plant == Plant::kNone && log_->durable() && !disk_->killed() &&
+      log_->synced_ticks() != room_->tick()) {
+    chronicle_->violate(Invariant::kLog, "clients hear of tick " + std::to_string(room_->tick()) +
+                                             " before it is on the disk");
+  }
+}
+
+void RoomHost::drain() {
+  if (room_) room_->drain("the run is over");
+}
+
+void RoomHost::die(Death death) {
+  if (!room_) return;
+  for (Session& session : sessions_) session.die();
+  sessions_.clear();
+  room_.reset();
+  check_log(death);
+  check_replay();
+  disk_->forget(log_->file());
+}
+
+void RoomHost::check_log(std::optional<Death> death) {
+  const protocol::Bytes& bytes = disk_->content(log_->file());
+  const auto mistake = log_mistake({log_.get(), ledgers_.back().get(), death}, bytes);
+  if (mistake) chronicle_->violate(Invariant::kLog, *mistake);
+  const auto flip = flip_mistake(*ledgers_.back(), disk_->flipped(log_->file()));
+  if (flip) chronicle_->violate(Invariant::kLog, *flip);
+  chronicle_->count(Event::kLogVerified);
+  chronicle_->mix(bytes.size());
+}
+
+void RoomHost::check_replay() {
+  if (const auto differs = ledgers_.back()->not_replayable(simulation_of(*scene_))) {
+    chronicle_->violate(Invariant::kDigests, *differs);
+  }
+}
+
+Host::Host(const Settings& settings, const scenes::Scene& scene, const Random& random,
+           Chronicle& chronicle)
+    : settings_(&settings),
+      random_(random),
+      chronicle_(&chronicle),
+      disk_(settings.disk, random.fork(1), chronicle) {
+  rooms_.reserve(settings.rooms);
+  for (std::size_t room = 0; room < settings.rooms; ++room) {
+    rooms_.emplace_back(settings, scene, room, disk_, chronicle);
+  }
+  draw_misfortunes();
+}
+
+void Host::draw_misfortunes() {
+  const auto span_ns = static_cast<std::int64_t>(settings_->ticks * 1'000'000'000'000 /
+                                                 settings_->tick_rate_millihertz);
+  const auto draw = [&](std::uint32_t count, std::vector<std::int64_t>& times) {
+    for (std::uint32_t i = 0; i < count; ++i) times.push_back(random_.between(0, span_ns));
+    std::sort(times.begin(), times.end(), std::greater<>());
+  };
+  draw(settings_->server.pauses, pauses_ns_);
+  draw(settings_->server.deaths, deaths_ns_);
+}
+
+void Host::step(std::int64_t step_ns) {
+  const std::int64_t now = chronicle_->now_ns;
+  if (up_ && !deaths_ns_.empty() && now >= deaths_ns_.back()) {
+    deaths_ns_.pop_back();
+    die(random_.chance(settings_->server.power_cuts_of) ? Death::kPower : Death::kProcess);
+  }
+  if (!up_ && now < up_at_ns_) return;
+  if (!up_) {
+    up_ = true;
+    if (up_at_ns_ != 0) chronicle_->count(Event::kRestart);
+    for (RoomHost& room : rooms_) room.open();
+  }
+  if (paused()) return;
+  if (!pauses_ns_.empty() && now >= pauses_ns_.back()) {
+    pauses_ns_.pop_back();
+    paused_until_ns_ = now + random_.between(1, settings_->server.pause_max_ns);
+    chronicle_->count(Event::kServerPause);
+    chronicle_->note("the server is not run for a while");
+    return;
+  }
+  for (RoomHost& room : rooms_) {
+    room.step(step_ns);
+    if (disk_.killed()) return die(Death::kProcess);
+    if (draining_ || !room.over()) continue;
+    // The log broke down and the room stopped, as was asked for: somebody makes room and starts it.
+    disk_.enlarge();
+    room.check_log({});
+    room.check_replay();
+    room.open();
+    chronicle_->count(Event::kRestart);
+  }
+}
+
+void Host::die(Death death) {
+  chronicle_->count(death == Death::kPower ? Event::kPowerCut : Event::kProcessKill);
+  chronicle_->note(death == Death::kPower ? "a power cut" : "the server is killed");
+  disk_.kill();
+  disk_.restart(death);
+  for (RoomHost& room : rooms_) room.die(death);
+  up_ = false;
+  paused_until_ns_ = 0;
+  up_at_ns_ = chronicle_->now_ns + random_.between(50, 2'000) * kMillisecond;
+}
+
+void Host::accept(std::shared_ptr<Wire> wire) {
+  chronicle_->count(Event::kConnection);
+  RoomHost& room = rooms_[wire->room];
+  room.accept(std::move(wire));
+}
+
+void Host::calm() {
+  disk_.calm();
+  pauses_ns_.clear();
+  deaths_ns_.clear();
+}
+
+void Host::drain() {
+  draining_ = true;
+  for (RoomHost& room : rooms_) room.drain();
+}
+
+void Host::check_at_end() {
+  for (RoomHost& room : rooms_) {
+    room.check_log({});
+    room.check_replay();
+  }
+}
+
+}  // namespace cycloid::sim

@@ -1,0 +1,53 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+
+#include "cli/sim/ledger.hpp"
+#include "client/replica/follower.hpp"
+#include "protocol/messages.hpp"
+
+namespace cycloid::sim {
+
+/// Holds what one client hears, on one connection, against what was confirmed.
+class Observer {
+ public:
+  Observer(const Ledger& ledger, std::string name, Chronicle& chronicle)
+      : ledger_(&ledger), name_(std::move(name)), chronicle_(&chronicle) {}
+
+  /// Before the follower has it.
+  void heard(const protocol::ServerMessage& message);
+  /// After the follower took what was heard: its state is the confirmed one.
+  void check_state(const client::Follower& follower);
+
+  /// Its bytes were damaged on the way: what it hears is nobody's word, so nothing is checked until
+  /// it connects again.
+  void excuse() { excused_ = true; }
+  bool excused() const { return excused_; }
+  /// Its world was disturbed: its digests are wrong until an exact state comes.
+  void disturb() { disturbed_ = true; }
+  bool disturbed() const { return disturbed_; }
+  void mended() { disturbed_ = false; }
+
+  /// The last tick at which its state was found to be the confirmed one.
+  std::uint64_t verified_tick() const { return verified_tick_; }
+
+ private:
+  void on_frame(const protocol::InputFrame& frame);
+  void on_exact_state(std::uint64_t tick);
+  void wrong(Invariant invariant, const std::string& text) {
+    chronicle_->violate(invariant, name_ + ": " + text);
+  }
+
+  const Ledger* ledger_;
+  std::string name_;
+  Chronicle* chronicle_;
+  std::uint64_t last_frame_ = 0;
+  std::uint64_t exact_tick_ = 0;  ///< Of the last exact state announced: frames may go on there.
+  std::uint64_t verified_tick_ = 0;
+  bool welcomed_ = false;
+  bool excused_ = false;
+  bool disturbed_ = false;
+};
+
+}  // namespace cycloid::sim
