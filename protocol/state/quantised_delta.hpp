@@ -29,7 +29,7 @@ struct HeldState {
 /// it is.
 inline constexpr std::uint32_t kWaitTicksMax = 30;
 /// The least budget: with it every delta brings at least one change. Less counts as this.
-inline constexpr std::size_t kBudgetBytesMin = 64;
+inline constexpr std::size_t kBudgetBytesMin = 96;
 
 struct QuantisedDelta {
   std::vector<std::byte> bytes;  ///< Empty: nothing is shown otherwise than in the baseline.

@@ -69,7 +69,7 @@ bool is_on_grid(const QuantisedRotation& rotation, std::uint8_t dimension) {
 }
 
 /// The largest integer whose square is not above.
-static std::int32_t root_of(std::int32_t square) {
+static std::int32_t root_of(std::int64_t square) {
   std::int32_t root = 0;
   for (std::int32_t bit = 1 << 15; bit > 0; bit >>= 1)
     if (std::int64_t{root + bit} * (root + bit) <= square) root += bit;
@@ -80,14 +80,15 @@ std::array<std::int32_t, 3> parts_without(const QuantisedRotation& rotation, std
   std::array<std::int32_t, 3> parts{rotation.parts[0], rotation.parts[1], rotation.parts[2]};
   if (largest == rotation.largest) return parts;
   std::array<std::int32_t, 4> all{};
-  std::int32_t square = 2 * kRotationParts * kRotationParts;
+  // Wide, because what is heard may hold any parts until it is refused.
+  std::int64_t square = 2 * kRotationParts * kRotationParts;
   std::size_t at = 0;
   for (std::size_t i = 0; i < 4; ++i) {
     if (i == rotation.largest) continue;
     all[i] = parts[at++];
-    square -= all[i] * all[i];
+    square -= std::int64_t{all[i]} * all[i];
   }
-  all[rotation.largest] = root_of(std::max(0, square));
+  all[rotation.largest] = root_of(std::max<std::int64_t>(0, square));
   const std::int32_t sign = all[largest] < 0 ? -1 : 1;
   at = 0;
   for (std::size_t i = 0; i < 4; ++i)
