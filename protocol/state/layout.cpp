@@ -66,10 +66,12 @@ static StateLayout make_layout() {
     using Element = std::remove_cvref_t<decltype(array[0])>;
     ArrayLayout& into = layout.arrays[at++];
     into.name = name;
-    if constexpr (solver::kIsWord<Element>)
+    if constexpr (solver::kIsWord<Element>) {
       into.words.assign(1, WordKind::kInteger);
-    else
+    } else {
+      static_assert(solver::visited_bytes<Element>() <= kRecordWordsMax * kWordBytes);
       into.motion = motion_of(list_words<Element>(into.words));
+    }
     into.by_key = into.name == "contact";
   });
   return layout;

@@ -10,6 +10,9 @@
 
 namespace cycloid::protocol {
 
+/// Most words of a record, so that coders need no memory for one; checked when this is compiled.
+inline constexpr std::size_t kRecordWordsMax = 128;
+
 /// How a word of a record is guessed and what is left of it coded.
 enum class WordKind : std::uint8_t { kInteger, kFloat };
 

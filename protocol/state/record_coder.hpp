@@ -9,9 +9,6 @@
 
 namespace cycloid::protocol {
 
-/// Most words of a record; layouts with more are not coded.
-inline constexpr std::size_t kRecordWordsMax = 128;
-
 /// What has been learned of the records of one array while a delta is coded.
 class RecordCoder {
  public:

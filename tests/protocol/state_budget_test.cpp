@@ -36,7 +36,7 @@ std::vector<std::uint32_t> right_bodies(const QuantisedState& held, const Quanti
   return right;
 }
 
-TEST(Budget, OfAnySizeIsHonouredAndHeldIsWhatIsRead) {
+TEST(StateBudget, OfAnySizeIsHonouredAndHeldIsWhatIsRead) {
   std::mt19937 random(31);
   Played played("ball-pit-3d");
   played.step(20);
@@ -59,7 +59,7 @@ TEST(Budget, OfAnySizeIsHonouredAndHeldIsWhatIsRead) {
   }
 }
 
-TEST(Budget, FromNothingBringsAWorldPieceByPiece) {
+TEST(StateBudget, FromNothingBringsAWorldPieceByPiece) {
   Played played("cubes-901");
   const QuantisedState now = capture(played.simulation());
   QuantisedDelta made = encode_quantised(nullptr, now, 300);
@@ -79,7 +79,7 @@ TEST(Budget, FromNothingBringsAWorldPieceByPiece) {
   EXPECT_GT(deltas, 2);
 }
 
-TEST(Budget, TheSmallestBringsOneOfTheCostliestChanges) {
+TEST(StateBudget, TheSmallestBringsOneOfTheCostliestChanges) {
   // Everything about one body of many is as unlikely as it can be.
   const HeldState held = row_of(10'000);
   QuantisedState now = held.state;
@@ -95,7 +95,7 @@ TEST(Budget, TheSmallestBringsOneOfTheCostliestChanges) {
   EXPECT_EQ(encode_quantised(&held, now, 0).held.state, now);
 }
 
-TEST(Budget, GoesToWhatIsMostWrong) {
+TEST(StateBudget, GoesToWhatIsMostWrong) {
   const HeldState held = row_of(400);
   QuantisedState now = held.state;
   now.tick = 1;
@@ -111,7 +111,7 @@ TEST(Budget, GoesToWhatIsMostWrong) {
     EXPECT_TRUE(std::binary_search(right.begin(), right.end(), first)) << first;
 }
 
-TEST(Budget, GoesToWhatAppearsAndVanishesBeforeWhatMoves) {
+TEST(StateBudget, GoesToWhatAppearsAndVanishesBeforeWhatMoves) {
   const HeldState held = row_of(200);
   QuantisedState now = held.state;
   now.tick = 1;
@@ -129,7 +129,7 @@ TEST(Budget, GoesToWhatAppearsAndVanishesBeforeWhatMoves) {
                            [](const QuantisedBody& body) { return body.index == 50; }));
 }
 
-TEST(Budget, TheSmallestErrorIsNotForgottenBehindGreatOnes) {
+TEST(StateBudget, TheSmallestErrorIsNotForgottenBehindGreatOnes) {
   HeldState held = row_of(200);
   QuantisedState now = held.state;
   std::mt19937 random(34);
@@ -149,7 +149,7 @@ TEST(Budget, TheSmallestErrorIsNotForgottenBehindGreatOnes) {
   FAIL() << "it waits for ever";
 }
 
-TEST(Budget, ErrorThatAccumulatesOvertakesOneThatIsNew) {
+TEST(StateBudget, ErrorThatAccumulatesOvertakesOneThatIsNew) {
   HeldState held = row_of(2);
   QuantisedState now = held.state;
   now.tick = 100;
@@ -213,7 +213,7 @@ void expect_no_starvation(const Starving& starving) {
       static_cast<unsigned long long>(longest), static_cast<unsigned long long>(bound));
 }
 
-TEST(Budget, StarvesNoBody) {
+TEST(StateBudget, StarvesNoBody) {
   expect_no_starvation({256, 1, 0});
   expect_no_starvation({96, 1, 0});
   expect_no_starvation({200, 3, 0});
