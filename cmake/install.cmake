@@ -31,6 +31,8 @@ foreach(header
   install(FILES ${PROJECT_SOURCE_DIR}/solver/${header}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/solver/${folder})
 endforeach()
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/protocol/state
+  DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/protocol FILES_MATCHING PATTERN "*.hpp")
 if(CYCLOID_NETWORK)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/client/replica
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/client FILES_MATCHING PATTERN "*.hpp")

@@ -81,6 +81,7 @@ const std::vector<FuzzTarget>& targets() {
       {"token", run_token, token_seeds},
       {"gate", run_gate, gate_seeds},
 #endif
+      {"state-delta", run_state_delta, state_delta_seeds},
   };
   return kTargets;
 }

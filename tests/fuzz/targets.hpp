@@ -40,6 +40,8 @@ void run_token(Input input);
 std::vector<Seed> token_seeds();
 void run_gate(Input input);
 std::vector<Seed> gate_seeds();
+void run_state_delta(Input input);
+std::vector<Seed> state_delta_seeds();
 
 /// Ends the process with a sentence: the way in which a fuzzer learns of a failure.
 [[noreturn]] void fail(const std::string& why);
