@@ -13,7 +13,7 @@
 #include "client/net/tls.hpp"
 #include "protocol/codec.hpp"
 #include "protocol/messages.hpp"
-#include "transport/stream.hpp"
+#include "protocol/transport/stream.hpp"
 
 namespace cycloid::client {
 

@@ -7,7 +7,7 @@
 
 #include <stdexcept>
 
-#include "transport/fingerprint.hpp"
+#include "protocol/transport/fingerprint.hpp"
 
 namespace cycloid::client {
 namespace {

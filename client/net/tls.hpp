@@ -4,7 +4,7 @@
 #include <memory>
 #include <string>
 
-#include "transport/stream.hpp"
+#include "protocol/transport/stream.hpp"
 
 namespace cycloid::client {
 

@@ -7,9 +7,9 @@
 #include <span>
 #include <vector>
 
+#include "protocol/transport/stream.hpp"
 #include "server/room/admission.hpp"
 #include "server/room/room.hpp"
-#include "transport/stream.hpp"
 
 namespace cycloid::server {
 

@@ -11,7 +11,7 @@
 #include <utility>
 
 #include "protocol/codec.hpp"
-#include "transport/fingerprint.hpp"
+#include "protocol/transport/fingerprint.hpp"
 
 namespace cycloid::server {
 namespace {

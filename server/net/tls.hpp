@@ -8,7 +8,7 @@
 #include <string>
 #include <vector>
 
-#include "transport/stream.hpp"
+#include "protocol/transport/stream.hpp"
 
 namespace cycloid::server {
 

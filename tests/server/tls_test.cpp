@@ -4,8 +4,8 @@
 #include <fstream>
 
 #include "protocol/codec.hpp"
+#include "protocol/transport/fingerprint.hpp"
 #include "tests/server/tls_fixture.hpp"
-#include "transport/fingerprint.hpp"
 
 namespace cycloid::server {
 namespace {
