@@ -1,78 +1,59 @@
 #include "bench/load/scenario.hpp"
 
 namespace cycloid::load {
+namespace {
 
 using protocol::Mode;
 using protocol::Profile;
 
+const char* const kSmallRoom = "room:bodies=64";
+
+ClientGroup lockstep(const char* name, int count, Behaviour behaviour, double after_s = 0.0) {
+  return {name, count, Mode::kLockstep, Profile::kExact, behaviour, after_s};
+}
+
+ClientGroup snapshots(int count, Profile profile) {
+  return {"players", count, Mode::kSnapshot, profile, Behaviour::kPlays, 0.0};
+}
+
+Scenario one_room(const char* name, const char* what, std::vector<ClientGroup> groups) {
+  return {name, what, kSmallRoom, 1, 2, 1, std::move(groups)};
+}
+
+}  // namespace
+
 std::vector<Scenario> scenarios() {
-  const ClientGroup players{"players", 8, Mode::kLockstep, Profile::kExact, Behaviour::kPlays, 0.0};
-  const auto group = [](const char* name, int count, Mode mode, Profile profile,
-                        Behaviour behaviour, double after_s) {
-    return ClientGroup{name, count, mode, profile, behaviour, after_s};
+  const ClientGroup players = lockstep("players", 8, Behaviour::kPlays);
+  std::vector<Scenario> all = {
+      one_room("alone", "One room of 8 players: what the others are held against", {players}),
+      one_room("spectators", "1,000 spectators of one room of 8 players",
+               {players, lockstep("spectators", 1000, Behaviour::kWatches)}),
+      one_room("idle", "10,000 connections that say nothing, beside a room",
+               {players, lockstep("idle", 10000, Behaviour::kIdles, 0.5)}),
+      one_room("slowloris", "5,000 connections that say a byte a second, beside a room",
+               {players, lockstep("dripping", 5000, Behaviour::kDrips, 0.5)}),
+      one_room("mute", "100 clients that join and never read, beside a room",
+               {players, lockstep("mute", 100, Behaviour::kMute)}),
+      one_room("latency", "8 snapshot clients that act at any moment",
+               {snapshots(8, Profile::kExact)}),
   };
-  const ClientGroup watchers =
-      group("spectators", 1000, Mode::kLockstep, Profile::kExact, Behaviour::kWatches, 0.0);
-  return {
-      {"rooms", "100 rooms of 8 players and 64 bodies", "room:bodies=64", 100, 2, 1, {players}},
-      {"big-room",
-       "One room of 200 lockstep players",
-       "seats:200",
-       1,
-       2,
-       1,
-       {group("players", 200, Mode::kLockstep, Profile::kExact, Behaviour::kPlays, 0.0)}},
-      {"snapshots",
-       "128 snapshot clients of one room of 200 bodies, quantised",
-       "seats:128",
-       1,
-       2,
-       1,
-       {group("players", 128, Mode::kSnapshot, Profile::kQuantised, Behaviour::kPlays, 0.0)}},
-      {"spectators",
-       "1,000 spectators of one room of 8 players",
-       "room:bodies=64",
-       1,
-       2,
-       1,
-       {players, watchers}},
-      {"idle",
-       "10,000 connections that say nothing, beside a room",
-       "room:bodies=64",
-       1,
-       2,
-       1,
-       {players, group("idle", 10000, Mode::kLockstep, Profile::kExact, Behaviour::kIdles, 0.5)}},
-      {"slowloris",
-       "5,000 connections that say a byte a second, beside a room",
-       "room:bodies=64",
-       1,
-       2,
-       1,
-       {players,
-        group("dripping", 5000, Mode::kLockstep, Profile::kExact, Behaviour::kDrips, 0.5)}},
-      {"mute",
-       "100 clients that join and never read, beside a room",
-       "room:bodies=64",
-       1,
-       2,
-       1,
-       {players, group("mute", 100, Mode::kLockstep, Profile::kExact, Behaviour::kMute, 0.0)}},
-      {"latency",
-       "8 snapshot clients that act at any moment",
-       "room:bodies=64",
-       1,
-       2,
-       1,
-       {group("players", 8, Mode::kSnapshot, Profile::kExact, Behaviour::kPlays, 0.0)}},
-      {"alone",
-       "One room of 8 players: what the others are held against",
-       "room:bodies=64",
-       1,
-       2,
-       1,
-       {players}},
-  };
+  all.push_back(
+      {"rooms", "100 rooms of 8 players and 64 bodies", kSmallRoom, 100, 2, 1, {players}});
+  all.push_back({"big-room",
+                 "One room of 200 lockstep players",
+                 "seats:200",
+                 1,
+                 2,
+                 1,
+                 {lockstep("players", 200, Behaviour::kPlays)}});
+  all.push_back({"snapshots",
+                 "128 snapshot clients of one room of 128 bodies, quantised",
+                 "seats:128",
+                 1,
+                 2,
+                 1,
+                 {snapshots(128, Profile::kQuantised)}});
+  return all;
 }
 
 }  // namespace cycloid::load
