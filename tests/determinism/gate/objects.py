@@ -28,6 +28,11 @@ PREFIXES = {"lock", "rep", "repz", "repnz", "data16", "cs", "ds", "es", "fs", "g
 X87_EXACT = (re.compile(r"json_(reader|writer)\.cpp\.o"), re.compile(r"fadds +\S+\(%e[a-z]+\)"))
 
 
+# On PowerPC the table of a switch lies in the code, behind the jump that reads it: distances back to
+# the function, 0xffff.... each, which a disassembler takes for no instruction or for one of these.
+POWERPC_TABLE = re.compile(r"\.long 0xffff[0-9a-f]{4}|fn?m(add|sub)s? f31,f31,f\d+,f31")
+
+
 class CannotJudge(Exception):
     """Nothing was found because nothing was read."""
 
@@ -84,7 +89,7 @@ def output_of(command: list[str]) -> str:
 
 def instructions(disassembly: str) -> Iterator[Instruction]:
     """Every instruction that objdump prints, with the function and the object around it."""
-    member, function, processor = "", "", None
+    member, function, processor, in_table = "", "", None, False
     for line in disassembly.splitlines():
         if match := re.match(r"(\S.*):\s+file format (\S+)", line):
             member, processor = Path(match[1]).name, processor_of(match[2].lower())
@@ -98,6 +103,10 @@ def instructions(disassembly: str) -> Iterator[Instruction]:
             words = match[1].split()
             while len(words) > 1 and (words[0] in PREFIXES or words[0] == "{evex}"):
                 words = words[1:]
+            in_table = in_table and POWERPC_TABLE.fullmatch(" ".join(words)) is not None
+            if in_table:
+                continue
+            in_table = words[0] == "bctr"
             yield Instruction(member, function, " ".join(words), processor)
 
 
