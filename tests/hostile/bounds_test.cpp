@@ -26,7 +26,7 @@ void expect_within(const Bound& bound, std::size_t bytes, const std::string& wha
   EXPECT_GT(used.total_bytes, 0u) << what;
 }
 
-constexpr Bound kOfLogs{16, 65536};
+constexpr Bound kOfLogs{16, 4096};
 constexpr Bound kOfSnapshots{8, 4096};
 constexpr Bound kOfBinaryScenes{512, 1u << 20};
 constexpr Bound kOfTextScenes{512, 1u << 20};
