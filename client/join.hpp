@@ -29,7 +29,7 @@ struct JoinOptions {
   protocol::Profile profile = protocol::Profile::kExact;  ///< Of a snapshot client's states.
   std::uint32_t predict_ticks = 0;  ///< Most ticks that a lockstep client predicts, up to 64.
   ReconnectOptions reconnect;
-  std::shared_ptr<StateDecoder> decoder;  ///< Of deltas; empty: whole exact states only.
+  std::shared_ptr<StateDecoder> decoder;  ///< Where empty: a DeltaDecoder.
   std::shared_ptr<Witness> witness;       ///< Of confirmed states, such as for desync reports.
   std::uint64_t ticks = 0;                ///< Leave after so many ticks of the match; 0: stay.
   int workers = 1;

@@ -25,7 +25,9 @@ Follower::Follower(protocol::Mode mode, scenes::Simulation simulation, FollowerO
       mode_(mode),
       options_(std::move(options)),
       assembly_(std::min(options_.snapshot_bytes_max, protocol::kServerMessageBytesMax)) {
-  if (!options_.decoder) options_.decoder = std::make_shared<ExactDecoder>();
+  if (!options_.decoder) {
+    options_.decoder = std::make_shared<DeltaDecoder>(options_.snapshot_bytes_max);
+  }
 }
 
 void Follower::greet(Outbox& out) {

@@ -68,7 +68,7 @@ struct FollowerOptions {
   std::uint32_t snapshot_bytes_max = protocol::kServerMessageBytesMax;
   /// Frames that may wait for an exact state that is still on its way: one minute at 60 Hz.
   std::size_t frames_waiting_max = 3600;
-  std::shared_ptr<StateDecoder> decoder;  ///< Where empty: an ExactDecoder.
+  std::shared_ptr<StateDecoder> decoder;  ///< Where empty: a DeltaDecoder.
   std::shared_ptr<Witness> witness;       ///< May be none.
   /// Told every notice for the user of the client. May be empty.
   std::function<void(const protocol::RoomNotice&)> on_notice;

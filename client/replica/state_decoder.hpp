@@ -6,15 +6,15 @@
 #include <vector>
 
 #include "protocol/messages.hpp"
+#include "protocol/state/quantised.hpp"
 
 namespace cycloid::client {
 
 /// The state after a tick as a snapshot client holds it: exact, or as poses alone.
 struct DecodedState {
   std::uint64_t tick = 0;
-  std::vector<std::byte> exact;      ///< World::encode; empty where the profile is quantised.
-  std::vector<scenes::Pose> poses;   ///< Where the profile is quantised.
-  std::vector<std::byte> quantised;  ///< What a decoder needs of it as a baseline, in its own form.
+  std::vector<std::byte> exact;        ///< World::encode; empty where the profile is quantised.
+  protocol::QuantisedState quantised;  ///< Where the profile is quantised.
 };
 
 /// Makes states of StateDeltas. Reads what a server sent: bounds everything, throws nothing.
@@ -28,11 +28,22 @@ class StateDecoder {
                              DecodedState& into) = 0;
 };
 
-/// Understands exact states that are sent whole: no baseline, the bytes are World::encode.
-class ExactDecoder final : public StateDecoder {
+/// Both profiles, as protocol/state/ writes them, on a baseline or on none.
+class DeltaDecoder final : public StateDecoder {
  public:
+  /// @param exact_bytes_max  Of one exact state; a delta that says more is refused.
+  explicit DeltaDecoder(std::size_t exact_bytes_max = std::size_t{64} << 20)
+      : exact_bytes_max_(exact_bytes_max) {}
   std::string decode(const protocol::StateDelta& delta, const DecodedState* baseline,
                      DecodedState& into) override;
+
+ private:
+  std::string decode_exact(const protocol::StateDelta& delta, const DecodedState* baseline,
+                           DecodedState& into) const;
+  static std::string decode_quantised(const protocol::StateDelta& delta,
+                                      const DecodedState* baseline, DecodedState& into);
+
+  std::size_t exact_bytes_max_;
 };
 
 }  // namespace cycloid::client

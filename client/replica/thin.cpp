@@ -9,7 +9,13 @@ Thin::Thin(scenes::Simulation simulation, FollowerOptions options)
     : Follower(protocol::Mode::kSnapshot, std::move(simulation), std::move(options)) {}
 
 std::vector<scenes::Pose> Thin::poses() const {
-  return quantised_ ? baselines_.back().poses : simulation_.poses();
+  if (!quantised_) return simulation_.poses();
+  const protocol::QuantisedState& state = baselines_.back().quantised;
+  std::vector<scenes::Pose> poses;
+  for (const protocol::QuantisedBody& body : state.bodies) {
+    poses.push_back(protocol::pose_of(body, state.dimension));
+  }
+  return poses;
 }
 
 std::uint64_t Thin::digest() const {
@@ -30,7 +36,10 @@ void Thin::on_exact(const protocol::Snapshot& state, Outbox& out) {
   quantised_ = false;
   DecodedState whole;
   whole.tick = state.tick;
-  whole.exact = state.state;
+  // Deltas go on from it in the profile that was asked for.
+  const bool exact = options().profile == protocol::Profile::kExact;
+  if (exact) whole.exact = state.state;
+  if (!exact) whole.quantised = protocol::capture(simulation_);
   keep(std::move(whole), out);
   const std::uint64_t most = std::clamp<std::uint64_t>(interval, 1, kIntervalTicksMax);
   send_inputs(state.tick + lead() + most - 1, most + 3, out);

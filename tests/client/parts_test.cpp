@@ -2,6 +2,8 @@
 
 #include "client/replica/replica.hpp"
 #include "client/replica/thin.hpp"
+#include "protocol/state/exact_delta.hpp"
+#include "protocol/state/quantised_delta.hpp"
 #include "tests/client/fed.hpp"
 
 namespace cycloid::client {
@@ -259,8 +261,8 @@ struct CountingDecoder final : StateDecoder {
                      DecodedState& into) override {
     if (baseline != nullptr && baseline->tick != delta.baseline_tick) return "another baseline";
     if (delta.bytes.empty()) return "empty";
-    into.poses.resize(1);
-    into.poses[0].position[0] = static_cast<float>(delta.tick);
+    into.quantised.bodies.resize(1);
+    into.quantised.bodies[0].position[0] = static_cast<std::int32_t>(delta.tick * 512);
     return "";
   }
 };
@@ -269,17 +271,59 @@ protocol::StateDelta quantised(std::uint64_t tick, std::uint64_t baseline) {
   return {tick, baseline, tick * 3, protocol::Profile::kQuantised, {std::byte{1}}};
 }
 
-TEST_F(ThinStates, WholeStatesAsDeltasArePutInPlaceAndAcknowledged) {
+TEST_F(ThinStates, ExactDeltasOnWhatWasAcknowledgedGiveTheStateToTheBit) {
   start();
-  for (int i = 0; i < 5; ++i) {
-    authority_.frame();
-    protocol::Snapshot state = authority_.snapshot();
-    feed(protocol::StateDelta{state.tick, 0, state.digest, protocol::Profile::kExact, state.state});
+  protocol::Snapshot before = authority_.snapshot();
+  std::size_t bytes = 0;
+  for (int i = 0; i < 20; ++i) {
+    for (int tick = 0; tick < 3; ++tick) authority_.frame();
+    const protocol::Snapshot now = authority_.snapshot();
+    protocol::StateDelta delta{now.tick, before.tick, now.digest, protocol::Profile::kExact, {}};
+    const bool from_nothing = before.tick == 0;
+    ASSERT_TRUE(protocol::encode_exact_delta(
+        from_nothing ? std::span<const std::byte>() : std::span<const std::byte>(before.state),
+        now.state, delta.bytes));
+    if (!from_nothing) bytes = std::max(bytes, delta.bytes.size());
+    feed(delta);
+    ASSERT_EQ(follower_.progress().phase, Phase::kRunning) << follower_.progress().reason;
     EXPECT_EQ(follower_.digest(), authority_.simulation().digest());
+    before = now;
   }
+  EXPECT_LT(bytes, before.state.size() / 2);
   const auto acks = all_of<protocol::Ack>(outbox_);
-  ASSERT_EQ(acks.size(), 6u);
-  EXPECT_EQ(acks.back().tick, 5u);
+  ASSERT_EQ(acks.size(), 21u);
+  EXPECT_EQ(acks.back().tick, 60u);
+}
+
+TEST_F(ThinStates, QuantisedDeltasGoOnFromTheExactStateAndStayWithinTheGrid) {
+  FollowerOptions quantising = options();
+  quantising.profile = protocol::Profile::kQuantised;
+  Thin follower(make(), quantising);
+  for (int i = 0; i < 5; ++i) authority_.frame();
+  follower.receive(authority_.welcome(0), outbox_);
+  for (const auto& part : parts_of(authority_.snapshot())) follower.receive(part, outbox_);
+  protocol::HeldState held;
+  held.state = protocol::capture(authority_.simulation());
+  for (int i = 0; i < 20; ++i) {
+    const std::uint64_t baseline = authority_.simulation().tick();
+    authority_.frame();
+    const auto now = protocol::capture(authority_.simulation());
+    const auto delta = protocol::encode_quantised(&held, now, 1u << 20);
+    held = delta.held;
+    follower.receive(protocol::StateDelta{now.tick, baseline, protocol::digest_of(held.state),
+                                          protocol::Profile::kQuantised, delta.bytes},
+                     outbox_);
+    ASSERT_EQ(follower.progress().phase, Phase::kRunning) << follower.progress().reason;
+    const auto right = authority_.simulation().poses();
+    const auto shown = follower.poses();
+    ASSERT_EQ(shown.size(), right.size());
+    for (std::size_t body = 0; body < right.size(); ++body) {
+      EXPECT_EQ(shown[body].index, right[body].index);
+      for (std::size_t axis = 0; axis < 3; ++axis)
+        EXPECT_NEAR(shown[body].position[axis], right[body].position[axis], 0.001);
+    }
+  }
+  EXPECT_EQ(follower.progress().last_tick, 25u);
 }
 
 TEST_F(ThinStates, AreAlsoTakenInParts) {
@@ -312,16 +356,23 @@ TEST_F(ThinStates, DeltaOfABaselineThatIsNotHeldIsDroppedAndNotAcknowledged) {
 }
 
 TEST_F(ThinStates, CorruptDeltasEndTheSession) {
-  start();
-  protocol::Snapshot state = authority_.snapshot();
-  protocol::StateDelta delta{1, 0, state.digest, protocol::Profile::kExact, state.state};
-  feed(delta);
-  expect_failed("is not of the tick");
-  Thin other(make(), options());
-  other.receive(authority_.welcome(0), outbox_);
-  other.receive(quantised(1, 0), outbox_);
-  EXPECT_EQ(other.progress().phase, Phase::kFailed);
-  EXPECT_NE(other.progress().reason.find("not of the exact profile"), std::string::npos);
+  const protocol::Snapshot state = authority_.snapshot();
+  protocol::StateDelta good{0, 0, state.digest, protocol::Profile::kExact, {}};
+  ASSERT_TRUE(protocol::encode_exact_delta({}, state.state, good.bytes));
+  protocol::StateDelta torn = good;
+  torn.bytes.resize(torn.bytes.size() / 2);
+  protocol::StateDelta other_tick = good;
+  other_tick.tick = 1;
+  protocol::StateDelta lying = quantised(1, 0);
+  lying.bytes =
+      protocol::encode_quantised(nullptr, protocol::capture(authority_.simulation()), 4096).bytes;
+  for (const protocol::StateDelta& wrong : {torn, other_tick, lying, quantised(1, 0)}) {
+    Thin follower(make(), options());
+    follower.receive(authority_.welcome(0), outbox_);
+    follower.receive(wrong, outbox_);
+    EXPECT_EQ(follower.progress().phase, Phase::kFailed);
+    EXPECT_NE(follower.progress().reason, "");
+  }
 }
 
 }  // namespace
