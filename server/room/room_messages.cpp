@@ -145,7 +145,10 @@ void Room::on_ack(PeerId id, Peer& peer, const protocol::Ack& ack) {
                       std::to_string(visible_tick(peer)));
   }
   if (peer.mode == protocol::Mode::kSnapshot) {
-    if (ack.tick <= simulation_.tick()) peer.acked_tick = std::max(peer.acked_tick, ack.tick);
+    const bool known = !peer.state_due && ack.tick >= peer.exact_tick;
+    if (known && ack.tick <= simulation_.tick()) {
+      peer.acked_tick = std::max(peer.acked_tick, ack.tick);
+    }
     return;
   }
   // Of a client that came back with its state: the frames since are enough, if they are kept.

@@ -20,7 +20,11 @@ bool Room::rewind(std::uint64_t tick) {
   delay_.look_anew();
   // What it was at that tick is not known any more; what it is now goes on.
   changes_ = {{protocol::ChangeKind::kInputDelay, delay_.ticks()}};
-  if (hooks_.log != nullptr) hooks_.log->branch(tick, digest_);
+  if (hooks_.log != nullptr) {
+    const MadeTick* made = frames_.find(tick);  // Tick 0 had no frame.
+    const protocol::LogTick branch{made == nullptr ? protocol::InputFrame{} : made->frame, digest_};
+    hooks_.log->branch(branch, states_.of(simulation_, digest_)->bytes());
+  }
   notice(Notice::Kind::kAct, "the match goes on from tick " + std::to_string(tick) +
                                  ", and not from " + std::to_string(from));
   rewind_peers(tick);

@@ -76,8 +76,8 @@ class MemoryLog final : public LogSink {
                 std::span<const std::byte> state) override {
     keyframes.push_back({tick, digest, {state.begin(), state.end()}});
   }
-  void branch(std::uint64_t tick, std::uint64_t digest) override {
-    branches.push_back({tick, digest});
+  void branch(const protocol::LogTick& from, std::span<const std::byte> state) override {
+    branches.push_back({from.frame.tick, from.digest, {state.begin(), state.end()}});
   }
   bool durable() const override { return durable_; }
   std::string error() const override { return "the disk is gone"; }
@@ -87,7 +87,7 @@ class MemoryLog final : public LogSink {
   std::uint64_t keyframe_ticks = 0;  ///< 0: wants none.
   std::vector<protocol::LogTick> ticks;
   std::vector<protocol::Snapshot> keyframes;
-  std::vector<protocol::Digest> branches;
+  std::vector<protocol::Snapshot> branches;
   std::optional<protocol::LogFooter> footer;
 
  private:

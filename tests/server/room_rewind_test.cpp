@@ -29,6 +29,9 @@ TEST_F(RoomRewind, TheMatchGoesOnFromTheTickAndAllClientsWithIt) {
   ASSERT_EQ(log_.branches.size(), 1u);
   EXPECT_EQ(log_.branches[0].tick, 130u);
   EXPECT_EQ(log_.branches[0].digest, log_.ticks[129].digest);
+  scenes::Simulation branch = simulation_of(scene_);
+  ASSERT_TRUE(branch.decode(log_.branches[0].state).ok());
+  EXPECT_EQ(branch.digest(), log_.branches[0].digest);
 
   say(player, protocol::Digest{180, mirror.digests[180]});
   EXPECT_FALSE(room_->wants_close(player)) << "it has not heard of it yet";
