@@ -5,22 +5,15 @@
 #include <span>
 #include <string>
 
-#include "protocol/log/values.hpp"
+#include "protocol/log_format.hpp"
 
 namespace cycloid::server {
 
-/// Where a room hands its ticks, in order, each before any client hears of it. All calls come from
-/// the room's thread.
+/// Where a room hands its ticks, in order, each before any client hears of it.
 class LogSink {
  public:
   virtual ~LogSink() = default;
   virtual void tick(const protocol::LogTick& tick) = 0;
-  /// Whether the state after `tick`, which was the last one handed over, is wanted. It takes time
-  /// to encode, so the sink says when.
-  virtual bool wants_keyframe(std::uint64_t /*tick*/) const { return false; }
-  /// The exact state after `tick`. @pre wants_keyframe(tick)
-  virtual void keyframe(std::uint64_t /*tick*/, std::uint64_t /*digest*/,
-                        std::span<const std::byte> /*state*/) {}
   virtual void close(const protocol::LogFooter& footer) = 0;
   /// Whether `keyframe` is to follow this tick.
   virtual bool wants_keyframe(std::uint64_t tick) const {
