@@ -7,6 +7,8 @@ packages=(
   nlohmann-json3-dev libflatbuffers-dev     # scenes and protocol: JSON; binary forms
   flatbuffers-compiler
   libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
+  prometheus-cpp-dev libcivetweb-dev        # metrics; their HTTP server
+  libtomlplusplus-dev                       # configuration files
   libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
   librapidcheck-dev                         # tests of properties: random cases that shrink
   python3                                   # scripts that measure and that read objects
