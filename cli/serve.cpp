@@ -1,5 +1,6 @@
 #include "server/serve.hpp"
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -7,12 +8,16 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "server/config/run.hpp"
 
 namespace cycloid::cli {
 namespace {
 
 struct ServeCommand {
   std::string scene;
+  std::string config;
+  bool check_config = false;
+  CLI::App* parsed = nullptr;
   server::ServeOptions options;
   double tick_rate = 0.0;
   std::string log_sync = "interval";
@@ -52,7 +57,96 @@ Exit exit_of(const server::ServeReport& report) {
   return kExitIo;
 }
 
+std::string host_text(const std::string& address) {
+  return address.find(':') != std::string::npos ? "[" + address + "]" : address;
+}
+
+scenes::Loaded load_for_config(const std::string& name) {
+  try {
+    scenes::Loaded loaded;
+    loaded.scene = load_scene(name);
+    return loaded;
+  } catch (const Failure& failure) {
+    scenes::Loaded loaded;
+    loaded.mistakes.push_back({"", failure.what()});
+    return loaded;
+  }
+}
+
+/// What the command line says counts, whatever the file says.
+void override_config(const ServeCommand& command, server::ServerConfig& config) {
+  const auto said = [&](const char* option) { return command.parsed->count(option) > 0; };
+  server::HostOptions& host = config.host;
+  const server::Limits& limits = command.options.limits;
+  if (said("--address")) host.address = command.options.address;
+  if (said("--port")) host.port = command.options.port;
+  if (said("--threads")) host.threads = command.options.threads;
+  if (said("--rt")) host.realtime = true;
+  if (said("--drain")) host.drain = command.options.drain;
+  if (said("--snapshot-every")) host.limits.room.snapshot_ticks = limits.snapshot_ticks;
+  if (said("--digest-every")) host.limits.room.digest_ticks = limits.digest_ticks;
+  if (said("--input-delay")) host.limits.room.input_delay_ticks = limits.input_delay_ticks;
+  if (said("--connections")) host.limits.room.connections_max = limits.connections_max;
+}
+
+Exit serve_config(const ServeCommand& command, bool json) {
+  for (const char* option :
+       {"--ticks", "--tick-rate", "--workers", "--log", "--log-sync", "--stop-on-log-error"}) {
+    if (command.parsed->count(option) == 0) continue;
+    throw Failure(kExitUsage, std::string(option) +
+                                  " is of one room: with --config it stands in "
+                                  "a [template.NAME] of the file");
+  }
+  server::ConfigResult read = server::read_config_file(command.config, load_for_config);
+  if (!read.config) {
+    throw Failure(kExitUsage, server::config_mistakes_text(command.config, read.mistakes));
+  }
+  if (command.check_config) {
+    if (json) print_json({{"config", command.config}, {"good", true}}, kExitGood);
+    if (!json) std::cout << command.config << ": good\n";
+    return kExitGood;
+  }
+  server::ConfiguredServer configured;
+  configured.config = std::move(*read.config);
+  configured.file = command.config;
+  configured.load_scene = load_for_config;
+  configured.override_config = [&](server::ServerConfig& config) {
+    override_config(command, config);
+  };
+  override_config(command, configured.config);
+  const std::string host = host_text(configured.config.host.address);
+  const std::string operation = host_text(configured.config.operation.address);
+  const auto on_listening = [&](const server::ListeningAt& at) {
+    std::ostream& out = json ? std::cerr : std::cout;
+    out << "listening on " << host << ':' << at.port << std::endl;
+    if (at.operation_port != 0) {
+      out << "operation on " << operation << ':' << at.operation_port << std::endl;
+    }
+  };
+  const server::HostReport report = server::run_configured(configured, on_listening);
+  Json rooms = Json::object();
+  Exit exit = kExitGood;
+  for (const auto& [name, room] : report.rooms) {
+    rooms[name] = to_json(room);
+    exit = std::max(exit, exit_of(room));
+  }
+  if (exit == kExitGood && !report.good) exit = kExitIo;  // Of a room that is no longer listed.
+  const Json object = {
+      {"rooms_ended", report.rooms_ended}, {"refusals", report.refusals}, {"rooms", rooms}};
+  if (json) print_json(object, exit);
+  if (!json) std::cout << object.dump(2) << '\n';
+  return exit;
+}
+
 Exit serve(ServeCommand command, bool json) {
+  if (!command.config.empty()) {
+    if (!command.scene.empty()) {
+      throw Failure(kExitUsage, "SCENE and --config: one of them, not both");
+    }
+    return serve_config(command, json);
+  }
+  if (command.scene.empty()) throw Failure(kExitUsage, "SCENE or --config is required");
+  if (command.check_config) throw Failure(kExitUsage, "--check-config needs --config");
   server::ServeOptions& options = command.options;
   options.scene = load_scene(command.scene);
   options.scene_name = options.scene.name;
@@ -61,9 +155,8 @@ Exit serve(ServeCommand command, bool json) {
   if (command.log_sync == "tick") options.log_sync = server::LogSync::kEveryTick;
 
   const auto on_listening = [&](std::uint16_t port) {
-    const bool v6 = options.address.find(':') != std::string::npos;
-    const std::string host = v6 ? "[" + options.address + "]" : options.address;
-    (json ? std::cerr : std::cout) << "listening on " << host << ':' << port << std::endl;
+    (json ? std::cerr : std::cout)
+        << "listening on " << host_text(options.address) << ':' << port << std::endl;
   };
   const server::ServeReport report = server::serve(options, on_listening);
   const Exit exit = exit_of(report);
@@ -80,6 +173,27 @@ Exit serve(ServeCommand command, bool json) {
               << '\n';
   }
   return exit;
+}
+
+void add_process(CLI::App& command, ServeCommand& serve) {
+  command.add_option("--config", serve.config,
+                     "Serve the rooms of this file (TOML; docs/server.md has its keys)");
+  command.add_flag("--check-config", serve.check_config,
+                   "Read the file, name every mistake, and serve nothing");
+  command.add_option("--threads", serve.options.threads, "Threads of ticks and sockets")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 64));
+  command.add_flag("--rt", serve.options.realtime,
+                   "Ask for SCHED_FIFO and locked memory; goes on without, and says so");
+  command
+      .add_option_function<double>(
+          "--drain",
+          [&serve](double seconds) {
+            serve.options.drain =
+                std::chrono::milliseconds(static_cast<std::int64_t>(seconds * 1000.0));
+          },
+          "Seconds from a SIGTERM to the end of the rooms; 0: at once")
+      ->check(CLI::Range(0.0, 86400.0));
 }
 
 void add_limits(CLI::App& command, server::Limits& limits) {
@@ -103,9 +217,9 @@ void add_serve(CLI::App& app, Action& action) {
   auto command = std::make_shared<ServeCommand>();
   server::ServeOptions& options = command->options;
   CLI::App* serving = add_command(
-      app, "serve", "Serve one room; prints 'listening on ADDRESS:PORT' (with --json on stderr)",
+      app, "serve", "Serve rooms; prints 'listening on ADDRESS:PORT' (with --json on stderr)",
       action);
-  serving->add_option("SCENE", command->scene, "A catalogue name or a scene file")->required();
+  serving->add_option("SCENE", command->scene, "A catalogue name or a scene file; or --config");
   serving->add_option("--address", options.address, "The address to listen on")
       ->capture_default_str();
   serving->add_option("--port", options.port, "The port; 0: any")->capture_default_str();
@@ -125,7 +239,9 @@ void add_serve(CLI::App& app, Action& action) {
       ->check(CLI::IsMember({"interval", "tick"}));
   serving->add_flag("--stop-on-log-error", options.stop_on_log_error,
                     "End the match when the log cannot be written");
+  add_process(*serving, *command);
   add_limits(*serving, options.limits);
+  command->parsed = serving;
   serving->callback(
       [command, &action] { action.run = [=, &action] { return serve(*command, action.json); }; });
 }

@@ -96,15 +96,17 @@ void HostedRoom::ask(Done done, std::function<ActResult(Room&)> question) {
 }
 
 void HostedRoom::kick(std::uint16_t seat, std::string reason, Done done) {
-  ask(std::move(done),
-      [seat, reason = std::move(reason)](Room& room) { return kick_seat(room, seat, reason); });
+  ask(std::move(done), [seat, reason = std::move(reason)](Room& room) {
+    if (room.kick(seat, reason)) return ActResult{};
+    return ActResult{kNotFound, "seat: nobody sits in " + std::to_string(seat)};
+  });
 }
 
 void HostedRoom::rewind(std::uint64_t tick, Done done) {
   ask(std::move(done), [tick](Room& room) {
     if (room.rewind(tick)) return ActResult{};
-    return ActResult{kConflict, "tick: it is " + std::to_string(tick) + ", of the room's " +
-                                    std::to_string(room.tick()) + ", and is no longer kept"};
+    return ActResult{kConflict, "tick: " + std::to_string(tick) + " is not kept; the room is at " +
+                                    std::to_string(room.tick())};
   });
 }
 

@@ -1,0 +1,302 @@
+#include "server/operation/operation.hpp"
+
+#include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json.hpp>
+#include <regex>
+#include <set>
+#include <sstream>
+
+#include "server/operation/admin_fields.hpp"
+#include "tests/server/host_fixture.hpp"
+
+namespace cycloid::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr const char* kToken = "a-token-for-tests-only";
+
+struct Answer {
+  int status = 0;
+  std::string head;
+  std::string body;
+};
+
+/// One HTTP request over a connection of its own.
+Answer http(std::uint16_t port, const std::string& method, const std::string& path,
+            const std::string& body = "", const std::string& token = kToken) {
+  asio::io_context io;
+  asio::ip::tcp::socket socket(io);
+  socket.connect({asio::ip::address_v4::loopback(), port});
+  std::string request = method + " " + path + " HTTP/1.1\r\nHost: localhost\r\nContent-Length: " +
+                        std::to_string(body.size()) + "\r\nConnection: close\r\n";
+  if (!token.empty()) request += "Authorization: Bearer " + token + "\r\n";
+  request += "\r\n" + body;
+  asio::error_code ignored;
+  asio::write(socket, asio::buffer(request), ignored);
+  std::string reply;
+  asio::read(socket, asio::dynamic_buffer(reply), ignored);
+  Answer answer;
+  const std::size_t split = reply.find("\r\n\r\n");
+  if (split == std::string::npos) return answer;
+  answer.head = reply.substr(0, split);
+  answer.body = reply.substr(split + 4);
+  answer.status = std::stoi(reply.substr(9, 3));
+  return answer;
+}
+
+class OperationTest : public testing::Test {
+ protected:
+  void open(HostOptions options, bool with_admin = true) {
+    server_.emplace(std::move(options));
+    OperationOptions operation;
+    operation.missed_ticks_max = 12;
+    if (with_admin) {
+      AdminOptions admin;
+      admin.token = kToken;
+      admin.snapshot_directory = testing::TempDir();
+      operation.admin = std::move(admin);
+    }
+    operation_.emplace(server_->host(), std::move(operation));
+  }
+  void open(bool with_admin = true) {
+    HostOptions options = quiet_host(lines_);
+    options.rooms.push_back({"arena", two_seat_settings()});
+    open(std::move(options), with_admin);
+  }
+  Answer get(const std::string& path) { return http(operation_->port(), "GET", path); }
+  Answer post(const std::string& path, const std::string& body = "") {
+    return http(operation_->port(), "POST", path, body);
+  }
+  std::string error_of(const Answer& answer) {
+    return nlohmann::json::parse(answer.body).value("error", "");
+  }
+  std::string close() {
+    operation_.reset();
+    server_->stop();
+    (void)server_->report();
+    server_.reset();
+    return lines_.text();
+  }
+
+  HostLines lines_;
+  std::optional<RunningHost> server_;
+  std::optional<Operation> operation_;
+};
+
+TEST_F(OperationTest, MetricsAreWhatPrometheusReads) {
+  open();
+  HostPeer peer(server_->port());
+  peer.greet("arena");
+  ASSERT_TRUE(peer.wait_for<protocol::Welcome>());
+  HostPeer stranger(server_->port());
+  stranger.greet("nowhere");
+  ASSERT_TRUE(stranger.wait_for<protocol::Refused>());
+  const auto room = server_->host().find("arena");
+  ASSERT_TRUE(eventually([&] { return room->meters().tick.get() >= 10; }));
+  const Answer answer = get("/metrics");
+  ASSERT_EQ(answer.status, 200);
+  EXPECT_NE(answer.head.find("text/plain; version=0.0.4"), std::string::npos);
+
+  const std::regex kSample(
+      R"re(^([a-z_]+)(\{([a-z_]+="[^"]*",?)+\})? (-?[0-9.e+-]+|\+Inf|NaN)$)re");
+  std::set<std::string> typed;
+  std::map<std::string, double> values;
+  std::istringstream lines(answer.body);
+  for (std::string line; std::getline(lines, line);) {
+    std::istringstream words(line);
+    std::string mark, keyword, name;
+    if (line.starts_with("#")) {
+      words >> mark >> keyword >> name;
+      if (keyword == "TYPE") EXPECT_TRUE(typed.insert(name).second) << "twice: " << name;
+      continue;
+    }
+    std::smatch match;
+    ASSERT_TRUE(std::regex_match(line, match, kSample)) << line;
+    std::string family = match[1];
+    for (const char* suffix : {"_bucket", "_sum", "_count"}) {
+      const std::string base = family.substr(0, family.rfind(suffix));
+      if (family.ends_with(suffix) && typed.contains(base)) family = base;
+    }
+    EXPECT_TRUE(typed.contains(family)) << line;
+    values[match[1].str() + match[2].str()] = std::stod(match[4]);
+  }
+  EXPECT_GE(values.at("cycloid_room_tick{room=\"arena\"}"), 10.0);
+  EXPECT_EQ(values.at("cycloid_room_clients{room=\"arena\"}"), 1.0);
+  EXPECT_EQ(values.at("cycloid_rooms{stage=\"running\"}"), 1.0);
+  EXPECT_EQ(values.at("cycloid_refusals_total{room=\"\",code=\"no_such_room\"}"), 1.0);
+  const double lateness = values.at("cycloid_room_tick_lateness_seconds_count{room=\"arena\"}");
+  EXPECT_GE(lateness, 9.0);
+  EXPECT_GE(values.at("cycloid_room_tick_seconds_count{room=\"arena\"}"), lateness);
+  for (const char* name :
+       {"cycloid_room_inputs_replaced_total", "cycloid_room_hash_mismatches_total",
+        "cycloid_room_queue_bytes", "cycloid_room_catch_up_ticks_total",
+        "cycloid_room_slowed_seconds_total", "cycloid_room_encodes_total",
+        "cycloid_log_sync_seconds", "cycloid_connections"}) {
+    EXPECT_TRUE(typed.contains(name)) << name;
+  }
+  const double least = values.at("cycloid_room_tick_seconds_bucket{room=\"arena\",le=\"5e-05\"}");
+  EXPECT_LE(least, values.at("cycloid_room_tick_seconds_bucket{room=\"arena\",le=\"+Inf\"}"));
+}
+
+TEST_F(OperationTest, LivezFailsWhileATickIsStuckAndReadyzWhileDraining) {
+  HostOptions options = quiet_host(lines_);
+  const std::string log =
+      testing::TempDir() + "cycloid-livez-" + std::to_string(::getpid()) + ".log";
+  std::filesystem::remove(log);
+  std::atomic<bool> hangs{false};
+  options.log_calls.sync = [&](int) {
+    while (hangs) std::this_thread::sleep_for(1ms);
+    return 0;
+  };
+  options.rooms.push_back({"arena", two_seat_settings()});
+  options.rooms[0].settings.log = log;
+  options.rooms[0].settings.log_sync = LogSync::kEveryTick;
+  open(std::move(options));
+  EXPECT_TRUE(eventually([&] { return get("/livez").status == 200; }));
+  EXPECT_EQ(get("/readyz").status, 200);
+  hangs = true;
+  EXPECT_TRUE(eventually([&] { return get("/livez").status == 503; }));
+  EXPECT_NE(get("/livez").body.find("room arena is"), std::string::npos);
+  EXPECT_EQ(get("/metrics").status, 200);  // A scrape does not wait for the tick.
+  hangs = false;
+  EXPECT_TRUE(eventually([&] { return get("/livez").status == 200; }));
+  HostPeer peer(server_->port());
+  peer.greet("arena");
+  ASSERT_TRUE(peer.wait_for<protocol::Welcome>());
+  EXPECT_EQ(post("/admin/drain", R"({"deadline_ms": 60000})").status, 202);
+  EXPECT_TRUE(eventually([&] { return get("/readyz").status == 503; }));
+  EXPECT_EQ(get("/livez").status, 200);
+  peer.hang_up();
+  (void)close();
+  std::filesystem::remove(log);
+}
+
+TEST_F(OperationTest, AnAdminSteersRoomsAndEveryActIsOnRecord) {
+  open();
+  EXPECT_EQ(post("/admin/rooms", R"({"name": "duel-1", "template": "hall"})").status, 201);
+  HostPeer peer(server_->port());
+  peer.greet("duel-1", 1);
+  ASSERT_TRUE(peer.wait_for<protocol::Welcome>());
+  const auto listed = nlohmann::json::parse(get("/admin/rooms").body);
+  ASSERT_EQ(listed.at("rooms").size(), 2u);
+  EXPECT_EQ(listed.at("rooms")[1].at("name"), "duel-1");
+  EXPECT_EQ(listed.at("rooms")[1].at("seats"), 2);
+
+  EXPECT_EQ(post("/admin/rooms/duel-1/lock").status, 200);
+  EXPECT_TRUE(nlohmann::json::parse(get("/admin/rooms/duel-1").body).at("locked").get<bool>());
+  EXPECT_EQ(post("/admin/rooms/duel-1/unlock").status, 200);
+  EXPECT_EQ(post("/admin/rooms/duel-1/pause").status, 200);
+  EXPECT_EQ(nlohmann::json::parse(get("/admin/rooms/duel-1").body).at("stage"), "paused");
+  EXPECT_EQ(post("/admin/rooms/duel-1/resume").status, 200);
+
+  const std::string file = "cycloid-snapshot-" + std::to_string(::getpid());
+  const std::string path = testing::TempDir() + "/" + file;
+  std::filesystem::remove(path);
+  const std::string wanted = R"({"file": ")" + file + R"("})";
+  EXPECT_EQ(post("/admin/rooms/duel-1/snapshot", wanted).status, 200);
+  EXPECT_GT(std::filesystem::file_size(path), 100u);
+  EXPECT_EQ(post("/admin/rooms/duel-1/snapshot", wanted).status, 409);  // Never over another.
+  std::filesystem::remove(path);
+
+  const auto room = server_->host().find("duel-1");
+  ASSERT_TRUE(eventually([&] { return room->meters().tick.get() > 70; }));
+  EXPECT_EQ(post("/admin/rooms/duel-1/rewind", R"({"tick": 60})").status, 200);
+  EXPECT_EQ(post("/admin/rooms/duel-1/rewind", R"({"tick": 999999})").status, 409);
+
+  EXPECT_EQ(post("/admin/rooms/duel-1/kick", R"({"seat": 0})").status, 404);
+  EXPECT_EQ(post("/admin/rooms/duel-1/kick", R"({"seat": 1, "reason": "afk"})").status, 200);
+  const auto refused = peer.wait_for<protocol::Refused>();
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->code, protocol::Refusal::kKicked);
+  EXPECT_EQ(refused->reason, "afk");
+
+  EXPECT_EQ(post("/admin/rooms/duel-1/end", R"({"reason": "over"})").status, 200);
+  EXPECT_TRUE(eventually([&] { return get("/admin/rooms/duel-1").status == 404; }));
+  const std::string lines = close();
+  for (const char* verb :
+       {"create", "lock", "unlock", "pause", "resume", "snapshot", "rewind", "kick", "end"}) {
+    EXPECT_NE(lines.find("\"audit\":\"" + std::string(verb) + "\""), std::string::npos) << verb;
+  }
+  EXPECT_NE(lines.find(R"("fields":{"reason":"afk","seat":1})"), std::string::npos);
+}
+
+TEST_F(OperationTest, EveryMistakeOfAnAdminGetsAStatusAndNamesTheField) {
+  open();
+  const struct {
+    const char* path;
+    std::string body;
+    int status;
+    const char* begins;
+  } kRows[] = {
+      {"/admin/rooms", "{", 400, "body: it is not JSON"},
+      {"/admin/rooms", "[1]", 400, "body: it is not a JSON object"},
+      {"/admin/rooms", "{}", 400, "name: it is missing"},
+      {"/admin/rooms", R"({"name": "x"})", 400, "template: it is missing"},
+      {"/admin/rooms", R"({"name": 7, "template": "hall"})", 400, "name: it is number"},
+      {"/admin/rooms", R"({"name": "a b", "template": "hall"})", 400, "name: a name is made of"},
+      {"/admin/rooms", R"({"name": "x", "template": "none"})", 404, "template: there is none"},
+      {"/admin/rooms", R"({"name": "arena", "template": "hall"})", 409, "name: there is a room"},
+      {"/admin/rooms", R"({"name": "x", "template": "hall", "seats": 3})", 400,
+       "seats: there is no such field"},
+      {"/admin/rooms", std::string(70000, ' '), 413, "body: more than"},
+      {"/admin/rooms/none/lock", "", 404, "path: there is no room"},
+      {"/admin/rooms/arena/explode", "", 404, "path: a room has no act"},
+      {"/admin/rooms/arena/unlock", "", 409, "the room is not locked"},
+      {"/admin/rooms/arena/resume", "", 409, "the room is running"},
+      {"/admin/rooms/arena/pause", R"({"why": 1})", 400, "why: there is no such field"},
+      {"/admin/rooms/arena/kick", "{}", 400, "seat: it is missing"},
+      {"/admin/rooms/arena/kick", R"({"seat": -1})", 400, "seat: it is -1"},
+      {"/admin/rooms/arena/kick", R"({"seat": 1.5})", 400, "seat: it is 1.5"},
+      {"/admin/rooms/arena/kick", R"({"seat": 2})", 404, "seat: it is 2"},
+      {"/admin/rooms/arena/kick", R"({"seat": 0, "reason": "a\nb"})", 400, "reason: it holds"},
+      {"/admin/rooms/arena/rewind", R"({"tick": "x"})", 400, "tick: it is"},
+      {"/admin/rooms/arena/snapshot", R"({"file": "../x"})", 400, "file: "},
+      {"/admin/rooms/arena/snapshot", "{}", 400, "file: it is missing"},
+      {"/admin/rooms/arena/rotate", "", 409, "rotate: the room writes no log"},
+      {"/admin/rooms/arena/drain", R"({"deadline_ms": 1e99})", 400, "deadline_ms: it is"},
+      {"/admin/reload", "", 409, "reload: the server was started without"},
+      {"/admin/nothing", "", 404, "path: there is no /admin/nothing"},
+  };
+  for (const auto& row : kRows) {
+    const Answer answer = post(row.path, row.body);
+    EXPECT_EQ(answer.status, row.status) << row.path << ' ' << row.body.substr(0, 60);
+    ASSERT_FALSE(answer.body.empty()) << row.path;
+    EXPECT_TRUE(error_of(answer).starts_with(row.begins)) << answer.body;
+  }
+  const Answer wrong = get("/admin/rooms/arena/lock");
+  EXPECT_EQ(wrong.status, 405);
+  EXPECT_NE(wrong.head.find("Allow: POST"), std::string::npos);
+  EXPECT_EQ(server_->host().rooms().size(), 1u);
+  EXPECT_EQ(server_->host().find("arena")->stage(), LifeStage::kRunning);
+}
+
+TEST_F(OperationTest, WithoutTheTokenNothingIsToldAndNothingDone) {
+  open();
+  for (const std::string token :
+       {"", "wrong", "a-token-for-tests-onlY", "a-token-for-tests-only2"}) {
+    EXPECT_EQ(http(operation_->port(), "GET", "/admin/rooms", "", token).status, 401) << token;
+    EXPECT_EQ(http(operation_->port(), "POST", "/admin/rooms/arena/end", "", token).status, 401);
+  }
+  EXPECT_EQ(server_->host().find("arena")->stage(), LifeStage::kRunning);
+  EXPECT_TRUE(equal_secrets("abc", "abc"));
+  EXPECT_FALSE(equal_secrets("abc", "abcd"));
+  const std::string lines = close();
+  EXPECT_NE(lines.find(R"("audit":"refused")"), std::string::npos);
+  EXPECT_LE(std::ranges::count(lines, '\n'), 10);  // Once in a second, not once for each.
+}
+
+TEST_F(OperationTest, WithoutATokenThereIsNoAdminInterface) {
+  open(false);
+  EXPECT_EQ(get("/admin/rooms").status, 404);
+  EXPECT_EQ(get("/livez").status, 200);
+  EXPECT_EQ(post("/metrics").status, 405);
+  EXPECT_EQ(get("/anything").status, 404);
+}
+
+}  // namespace
+}  // namespace cycloid::server
