@@ -57,15 +57,26 @@ Exit exit_of_refusal(Refusal code) {
       return kExitIncompatible;
     case Refusal::kSeatTaken:
     case Refusal::kNoSuchSeat:
+    case Refusal::kTokenInvalid:
+    case Refusal::kTokenExpired:
+    case Refusal::kTokenUsed:
+    case Refusal::kTokenScope:
+    case Refusal::kNoSuchRoom:
+    case Refusal::kResumeUnknown:
       return kExitUsage;
     case Refusal::kBadMessage:
     case Refusal::kTooLarge:
       return kExitCorrupt;
     case Refusal::kFaulted:
+    case Refusal::kResyncLimit:
       return kExitDiverged;
     case Refusal::kRoomFull:
     case Refusal::kTooSlow:
     case Refusal::kDraining:
+    case Refusal::kRoomLocked:
+    case Refusal::kRateLimited:
+    case Refusal::kKicked:
+    case Refusal::kReplaced:
       return kExitIo;
   }
   return kExitIo;

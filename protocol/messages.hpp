@@ -35,8 +35,8 @@ enum class Refusal : std::uint8_t {
   kReplaced = 20,       ///< The same seat was resumed on another connection.
   kResumeUnknown = 21,  ///< A resume token that is not, or no longer, of a seat here.
   kResyncLimit = 22,    ///< Desynced more often than a room mends.
-  kLast = kResyncLimit,
 };
+inline constexpr Refusal kLastRefusal = Refusal::kResyncLimit;
 
 /// Peers of another version do not understand each other; of another minor version they do, and the
 /// newer one leaves out what the older one has not heard of.
@@ -60,6 +60,7 @@ inline constexpr std::size_t kStatePartBytesMax = 3072;
 inline constexpr std::size_t kTickDigestsMax = 192;  ///< In one message of them.
 inline constexpr std::size_t kReasonBytesMax = 512;  ///< What is longer is cut when it is sent.
 inline constexpr std::size_t kFrameEventsMax = 1024;
+inline constexpr std::size_t kFrameChangesMax = 8;
 
 /// Where the input of a seat in a frame came from.
 enum class Origin : std::uint8_t {
@@ -105,7 +106,7 @@ struct InputFrame {
   std::uint64_t tick = 0;  ///< The tick this frame makes; the first is 1.
   std::vector<SeatFrame> seats;
   std::vector<FrameEvent> events;
-  std::vector<FrameChange> changes;
+  std::vector<FrameChange> changes{};
   friend bool operator==(const InputFrame&, const InputFrame&) = default;
 };
 
@@ -130,10 +131,10 @@ struct Hello {
   std::int32_t seat_wish = kAnySeat;
   std::string name;  ///< For the server's log; at most 64 bytes of UTF-8.
   std::uint16_t protocol_minor = kProtocolMinor;
-  std::string room;               ///< "": the only one, or the one that the token names.
-  std::vector<std::byte> token;   ///< Signed admission; empty where the server asks for none.
-  std::vector<std::byte> resume;  ///< kResumeBytes of the last Welcome, or empty.
-  std::string build;              ///< Compiler and flags, for a desync report.
+  std::string room{};               ///< "": the only one, or the one that the token names.
+  std::vector<std::byte> token{};   ///< Signed admission; empty where the server asks for none.
+  std::vector<std::byte> resume{};  ///< kResumeBytes of the last Welcome, or empty.
+  std::string build{};              ///< Compiler and flags, for a desync report.
   Profile profile = Profile::kExact;
 };
 
@@ -188,9 +189,9 @@ struct Welcome {
   std::uint32_t tick_rate_millihertz = 60000;
   std::uint32_t input_delay_ticks = 2;  ///< Lead at which a client should send its inputs.
   std::uint16_t protocol_minor = kProtocolMinor;
-  std::string room;
-  std::vector<std::byte> resume;    ///< kResumeBytes that bring the seat back, once; or empty.
-  std::string build;                ///< The server's compiler and flags.
+  std::string room{};
+  std::vector<std::byte> resume{};  ///< kResumeBytes that bring the seat back, once; or empty.
+  std::string build{};              ///< The server's compiler and flags.
   std::uint32_t digest_ticks = 60;  ///< Ticks between two digests.
 };
 

@@ -58,6 +58,7 @@ void Follower::receive(const protocol::ServerMessage& message, Outbox& out) {
         progress_.phase = Phase::kEnded;
         progress_.reason = bye.reason;
       },
+      [](const auto&) {},
   };
   std::visit(handler, message);
 }

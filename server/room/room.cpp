@@ -186,6 +186,28 @@ const char* refusal_name(protocol::Refusal code) {
       return "kDraining";
     case protocol::Refusal::kFaulted:
       return "kFaulted";
+    case protocol::Refusal::kTokenInvalid:
+      return "kTokenInvalid";
+    case protocol::Refusal::kTokenExpired:
+      return "kTokenExpired";
+    case protocol::Refusal::kTokenUsed:
+      return "kTokenUsed";
+    case protocol::Refusal::kTokenScope:
+      return "kTokenScope";
+    case protocol::Refusal::kNoSuchRoom:
+      return "kNoSuchRoom";
+    case protocol::Refusal::kRoomLocked:
+      return "kRoomLocked";
+    case protocol::Refusal::kRateLimited:
+      return "kRateLimited";
+    case protocol::Refusal::kKicked:
+      return "kKicked";
+    case protocol::Refusal::kReplaced:
+      return "kReplaced";
+    case protocol::Refusal::kResumeUnknown:
+      return "kResumeUnknown";
+    case protocol::Refusal::kResyncLimit:
+      return "kResyncLimit";
   }
   return "unknown";
 }

@@ -71,6 +71,7 @@ void Room::take(PeerId id, Peer& peer, const protocol::ClientMessage& message) {
         answer(id, peer, protocol::Pong{ping.token, simulation_.tick()});
       },
       [&](const protocol::Bye& bye) { leave(id, peer, "bye: " + bye.reason); },
+      [](const auto&) {},
   };
   std::visit(handler, message);
 }

@@ -174,7 +174,27 @@ TEST(Codec, ValuesOutOfRangeAreRefusedByName) {
   EXPECT_EQ(client_error(hello), "a name of 65 bytes, of at most 64");
   hello.name = "\xc0\x80";
   EXPECT_EQ(client_error(hello), "a name is not UTF-8");
+  hello = samples::full_hello();
+  hello.room = std::string(65, 'a');
+  EXPECT_EQ(client_error(hello), "a room name of 65 bytes, of at most 64");
+  hello = samples::full_hello();
+  hello.token.resize(kTokenBytesMax + 1);
+  EXPECT_EQ(client_error(hello), "a token of 513 bytes, of at most 512");
+  hello = samples::full_hello();
+  hello.resume.resize(31);
+  EXPECT_EQ(client_error(hello), "a resume token of 31 bytes instead of 32");
+  hello = samples::full_hello();
+  hello.profile = static_cast<Profile>(3);
+  EXPECT_EQ(client_error(hello), "profile 3");
   EXPECT_EQ(client_error(Input{0, {}}), "an input for tick 0");
+  EXPECT_EQ(client_error(TickDigests{1, {}}), "0 digests from tick 1");
+  const std::vector<std::uint64_t> many(kTickDigestsMax + 1);
+  EXPECT_EQ(client_error(TickDigests{1, many}), "193 digests from tick 1");
+  const std::vector<std::byte> part(5);
+  EXPECT_EQ(client_error(StatePart{1, 8, 4, part}), "a part of 5 bytes at 4 of 8");
+  EXPECT_EQ(client_error(StatePart{1, 8, 0xffffffff, part}),
+            "a part of 5 bytes at 4294967295 of 8");
+  EXPECT_EQ(client_error(StatePart{1, 8, 4, {}}), "a part of 0 bytes at 4 of 8");
 
   const auto server_error = [](const ServerMessage& message) {
     const Bytes bytes = encode(message);
@@ -184,23 +204,32 @@ TEST(Codec, ValuesOutOfRangeAreRefusedByName) {
   EXPECT_EQ(server_error(Welcome{-1, 4, 0, 60000, 2}), "seat -1 of 4");
   EXPECT_EQ(server_error(Welcome{0, 257, 0, 60000, 2}), "257 seats");
   EXPECT_EQ(server_error(Welcome{0, 4, 0, 0, 2}), "a tick rate of 0");
-  EXPECT_EQ(server_error(Refused{static_cast<Refusal>(12), ""}), "refusal 12");
+  EXPECT_EQ(server_error(Refused{static_cast<Refusal>(23), ""}), "refusal 23");
   EXPECT_EQ(server_error(Refused{static_cast<Refusal>(0), ""}), "refusal 0");
+
+  EXPECT_EQ(server_error(StateDelta{1, 2, 0, Profile::kExact, part}),
+            "a delta of tick 1 from the later tick 2");
+  EXPECT_EQ(server_error(SnapshotPart{1, 2, 4, 0, part}), "a part of 5 bytes at 0 of 4");
+  EXPECT_EQ(server_error(StateWanted{0}), "the state of tick 0 is wanted");
+  EXPECT_EQ(server_error(RoomNotice{static_cast<NoticeKind>(6), 1, 1, ""}), "notice 6");
 
   InputFrame frame = samples::frame(0);
   EXPECT_EQ(server_error(frame), "a frame of tick 0");
   frame = samples::frame(1);
   frame.seats.resize(257);
-  EXPECT_EQ(server_error(frame), "a frame of 257 seats and 2 events");
+  EXPECT_EQ(server_error(frame), "a frame of 257 seats, 2 events and 1 changes");
   frame = samples::frame(1);
-  frame.seats[1].origin = static_cast<Origin>(4);
-  EXPECT_EQ(server_error(frame), "origin 4");
+  frame.seats[1].origin = static_cast<Origin>(5);
+  EXPECT_EQ(server_error(frame), "origin 5");
   frame = samples::frame(1);
   frame.events[0].seat = 3;
   EXPECT_EQ(server_error(frame), "event 1 of seat 3");
   frame = samples::frame(1);
+  frame.changes[0].value = 0;
+  EXPECT_EQ(server_error(frame), "change 1 to 0");
+  frame = samples::frame(1);
   frame.events.resize(kFrameEventsMax + 1);
-  EXPECT_EQ(server_error(frame), "a frame of 3 seats and 1025 events");
+  EXPECT_EQ(server_error(frame), "a frame of 3 seats, 1025 events and 1 changes");
 }
 
 TEST(Codec, SizesAreCheckedBeforeAnythingIsRead) {

@@ -21,7 +21,7 @@ std::size_t whole_ticks(const samples::LogSample& sample, std::size_t bytes) {
 void expect_prefix(const Log& log, std::size_t ticks) {
   ASSERT_EQ(log.ticks.size(), ticks);
   for (std::size_t i = 0; i < ticks; ++i) {
-    EXPECT_EQ(log.ticks[i].frame, samples::frame(i + 1));
+    EXPECT_EQ(log.ticks[i].frame, samples::log_tick(i + 1).frame);
     EXPECT_EQ(log.ticks[i].digest, 1001 + i);
   }
 }

@@ -22,6 +22,29 @@ inline Hello hello() {
   return hello;
 }
 
+/// With everything that version 2 can say.
+inline Hello full_hello() {
+  Hello hello = samples::hello();
+  hello.protocol_version = 2;
+  hello.protocol_minor = 1;
+  hello.room = "arena-1";
+  hello.token.assign(kTokenBytesMax, std::byte{0x17});
+  hello.resume.assign(kResumeBytes, std::byte{0x71});
+  hello.build = "GNU 12.2 -O3";
+  hello.profile = Profile::kQuantised;
+  return hello;
+}
+
+inline Welcome welcome() {
+  Welcome welcome{1, 4, 100, 59940, 3};
+  welcome.protocol_minor = 1;
+  welcome.room = "arena-1";
+  welcome.resume.assign(kResumeBytes, std::byte{0x44});
+  welcome.build = "Clang 19";
+  welcome.digest_ticks = 30;
+  return welcome;
+}
+
 inline InputFrame frame(std::uint64_t tick) {
   InputFrame frame;
   frame.tick = tick;
@@ -29,25 +52,39 @@ inline InputFrame frame(std::uint64_t tick) {
                  {Origin::kRepeated, {{5, 6, 7, 8}, 1}},
                  {Origin::kAbsent, {}}};
   frame.events = {{EventKind::kJoin, 0}, {EventKind::kLeave, 2}};
+  frame.changes = {{ChangeKind::kInputDelay, 3}};
   return frame;
 }
 
 /// Each message a client has, with a value in every field.
 inline std::vector<ClientMessage> client_messages() {
-  return {hello(), Input{9, {{1, -2, 32767, -32768}, 0x8001}}, Digest{11, 0xfedcba9876543210},
-          Ping{12}, Bye{"gone home"}};
+  return {hello(),
+          Input{9, {{1, -2, 32767, -32768}, 0x8001}},
+          Digest{11, 0xfedcba9876543210},
+          Ping{12},
+          Bye{"gone home"},
+          full_hello(),
+          Ack{13},
+          TickDigests{14, {15, 16, 17}},
+          StatePart{18, 100, 63, std::vector<std::byte>(37, std::byte{0x5a})}};
 }
 
 /// Each message a server has, with a value in every field.
 inline std::vector<ServerMessage> server_messages() {
   const std::vector<std::byte> state(37, std::byte{0x5a});
-  return {Welcome{1, 4, 100, 59940, 3},
+  return {Welcome{1, 4, 100, 59940, 3, 0, {}, {}, {}, 60},
+          welcome(),
           Refused{Refusal::kSeatTaken, "seat 1"},
           frame(101),
           Snapshot{102, 0xabcdef, state},
           Digest{103, 5},
           Pong{104, 105},
-          Bye{"the end"}};
+          Bye{"the end"},
+          SnapshotPart{106, 107, 100, 63, state},
+          StateDelta{108, 98, 109, Profile::kQuantised, state},
+          Margin{110, -3, 2, 1},
+          StateWanted{111},
+          RoomNotice{NoticeKind::kRewound, 112, 113, "back to 113"}};
 }
 
 inline std::span<const std::byte> payload_of(const Bytes& message) {
@@ -71,7 +108,9 @@ struct LogSample {
 };
 
 inline LogTick log_tick(std::uint64_t tick) {
-  return {frame(tick), 1000 + tick};
+  InputFrame logged = frame(tick);
+  logged.changes.clear();  // Format 1 of the log knows none.
+  return {logged, 1000 + tick};
 }
 
 inline LogSample log_sample(std::uint64_t ticks, std::uint64_t salt = 0x5a17) {

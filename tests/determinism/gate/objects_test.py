@@ -103,6 +103,24 @@ class Objects(Planted):
     def test_x87_is_found(self) -> None:
         self.expect(self.compile("long double f(long double a) { return a + a; }"), 1, "x87")
 
+    def test_only_the_exact_conversion_of_json_is_let_through(self) -> None:
+        def listing(member: str, text: str) -> str:
+            return f"{member}:     file format elf32-i386\n00000000 <f>:\n  88:\t{text}\n"
+
+        for member, text, findings in (("json_reader.cpp.o", "fadds  0x0(%edi)", 0),
+                                       ("json_reader.cpp.o", "fmuls  0x0(%edi)", 1),
+                                       ("step.cpp.o", "fadds  0x0(%edi)", 1)):
+            found, count = objects.forbidden_instructions(listing(member, text))
+            self.assertEqual((len(found), count), (findings, 1), member + " " + text)
+
+    def test_the_table_of_a_switch_is_no_instruction(self) -> None:
+        head = "a.o:     file format elf64-powerpcle\n00000000 <f>:\n"
+        table = " 10:\tbctr\n 14:\t.long 0xfffffaa4\n 18:\tfnmsub  f31,f31,f15,f31\n"
+        code = " 1c:\tnop\n 20:\tfnmsub  f31,f31,f15,f31\n"
+        self.assertEqual(objects.forbidden_instructions(head + table), ([], 1))
+        found, count = objects.forbidden_instructions(head + table + code)
+        self.assertEqual((len(found), count), (1, 3))
+
     def test_imports_outside_the_list_are_found(self) -> None:
         for name, text in {
             "sinf": '#include <cmath>\nfloat f(float a) { return std::sin(a); }',

@@ -1,0 +1,168 @@
+#pragma once
+
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "protocol/codec.hpp"
+#include "protocol/little_endian.hpp"
+#include "protocol/schema/common_generated.h"
+#include "protocol/utf8.hpp"
+
+/// What the codecs of both directions have in common.
+namespace cycloid::protocol::wire_buffer {
+
+// Every table is built in statements of its own: two calls that change the builder in one argument
+// list would come in an order that differs between GCC and Clang, and so would the bytes.
+
+using Builder = flatbuffers::FlatBufferBuilder;
+
+/// A message is a root table and its body, and nothing nests deeper than struct in vector in table.
+inline constexpr flatbuffers::uoffset_t kDepthMax = 8;
+inline constexpr flatbuffers::uoffset_t kTablesMax = 4;
+/// Offset to the root, then the file identifier.
+inline constexpr std::size_t kPayloadBytesMin = 8;
+
+inline wire::SeatInput to_wire(const scenes::SeatInput& input) {
+  return {flatbuffers::span<const std::int16_t, scenes::kAxes>(input.axes), input.buttons};
+}
+
+inline scenes::SeatInput from_wire(const wire::SeatInput& input) {
+  scenes::SeatInput result;
+  for (std::size_t axis = 0; axis < result.axes.size(); ++axis) {
+    result.axes[axis] = input.axes()->Get(static_cast<flatbuffers::uoffset_t>(axis));
+  }
+  result.buttons = input.buttons();
+  return result;
+}
+
+inline flatbuffers::Offset<flatbuffers::String> reason_of(const std::string& reason, Builder& to) {
+  return to.CreateString(cut_utf8(reason, kReasonBytesMax));
+}
+
+/// Nothing is left out of the bytes, which then are those of a version that had no such field.
+inline flatbuffers::Offset<flatbuffers::Vector<std::uint8_t>> bytes_of(
+    const std::vector<std::byte>& bytes, Builder& to) {
+  if (bytes.empty()) return {};
+  return to.CreateVector(reinterpret_cast<const std::uint8_t*>(bytes.data()), bytes.size());
+}
+
+inline flatbuffers::Offset<flatbuffers::String> text_of(const std::string& text, Builder& to) {
+  if (text.empty()) return {};
+  return to.CreateString(text);
+}
+
+inline Bytes with_prefix(const Builder& builder) {
+  const auto payload_bytes = static_cast<std::uint32_t>(builder.GetSize());
+  const auto* payload = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());
+  Bytes bytes;
+  bytes.reserve(Framer::kPrefixBytes + payload_bytes);
+  append_little(payload_bytes, bytes);
+  bytes.insert(bytes.end(), payload, payload + payload_bytes);
+  return bytes;
+}
+
+/// The payload at an address where its numbers are aligned, as FlatBuffers reads them in place.
+class Aligned {
+ public:
+  explicit Aligned(std::span<const std::byte> payload)
+      : data_(payload.data()), bytes_(payload.size()) {
+    if (reinterpret_cast<std::uintptr_t>(data_) % alignof(std::uint64_t) == 0) return;
+    copy_ = std::make_unique<std::uint64_t[]>((bytes_ + 7) / 8);
+    std::memcpy(copy_.get(), data_, bytes_);
+    data_ = reinterpret_cast<const std::byte*>(copy_.get());
+  }
+  const std::uint8_t* data() const { return reinterpret_cast<const std::uint8_t*>(data_); }
+  std::size_t size() const { return bytes_; }
+
+ private:
+  const std::byte* data_;
+  std::size_t bytes_;
+  std::unique_ptr<std::uint64_t[]> copy_;
+};
+
+template <class Root>
+const Root* verified(const Aligned& payload, const char* identifier, std::string& error) {
+  if (!flatbuffers::BufferHasIdentifier(payload.data(), identifier)) {
+    error = std::string("the file identifier is not ") + identifier;
+    return nullptr;
+  }
+  flatbuffers::Verifier verifier(payload.data(), payload.size(), kDepthMax, kTablesMax);
+  if (!verifier.VerifyBuffer<Root>(identifier)) {
+    error = "the structure is damaged";
+    return nullptr;
+  }
+  return flatbuffers::GetRoot<Root>(payload.data());
+}
+
+/// Before anything is copied, and before the identifier is looked for, which reads 8 bytes.
+inline bool fits(std::size_t payload_bytes, std::uint32_t bytes_max, std::string& error) {
+  if (payload_bytes >= kPayloadBytesMin && payload_bytes <= bytes_max) return true;
+  error = "a payload of " + std::to_string(payload_bytes) + " bytes";
+  return false;
+}
+
+// Validation: what the verifier does not look at. Each sets `error` and returns nothing, or returns
+// the message.
+
+template <class Message>
+std::optional<Message> refuse(std::string& error, std::string why) {
+  error = std::move(why);
+  return {};
+}
+
+inline bool read_text(const flatbuffers::String* from, std::size_t bytes_max, const char* what,
+                      std::string& into, std::string& error) {
+  if (from == nullptr) return true;
+  if (from->size() > bytes_max) {
+    error = std::string(what) + " of " + std::to_string(from->size()) + " bytes, of at most " +
+            std::to_string(bytes_max);
+    return false;
+  }
+  into.assign(from->c_str(), from->size());
+  if (is_utf8(into)) return true;
+  error = std::string(what) + " is not UTF-8";
+  return false;
+}
+
+inline bool read_bytes(const flatbuffers::Vector<std::uint8_t>* from, std::size_t bytes_max,
+                       const char* what, std::vector<std::byte>& into, std::string& error) {
+  if (from == nullptr) return true;
+  if (from->size() > bytes_max) {
+    error = std::string(what) + " of " + std::to_string(from->size()) + " bytes, of at most " +
+            std::to_string(bytes_max);
+    return false;
+  }
+  const auto* bytes = reinterpret_cast<const std::byte*>(from->data());
+  into.assign(bytes, bytes + from->size());
+  return true;
+}
+
+/// A secret of a fixed size, or none.
+inline bool read_resume(const flatbuffers::Vector<std::uint8_t>* from, std::vector<std::byte>& into,
+                        std::string& error) {
+  if (!read_bytes(from, kResumeBytes, "a resume token", into, error)) return false;
+  if (into.empty() || into.size() == kResumeBytes) return true;
+  error = "a resume token of " + std::to_string(into.size()) + " bytes instead of " +
+          std::to_string(kResumeBytes);
+  return false;
+}
+
+/// A part of something larger, at its place: whether offset and size fit the total.
+inline bool part_fits(std::uint32_t total_bytes, std::uint32_t offset, std::size_t bytes,
+                      std::string& error) {
+  if (bytes != 0 && offset <= total_bytes && bytes <= total_bytes - offset) return true;
+  error = "a part of " + std::to_string(bytes) + " bytes at " + std::to_string(offset) + " of " +
+          std::to_string(total_bytes);
+  return false;
+}
+
+inline bool is_profile(Profile profile) {
+  return profile == Profile::kExact || profile == Profile::kQuantised;
+}
+
+}  // namespace cycloid::protocol::wire_buffer
