@@ -173,7 +173,8 @@ int main() {
   std::printf(
       "Bytes per tick over %d ticks, against a baseline `lag` ticks old. whole: World::encode. "
       "first: "
-      "from nothing.\nkbit/s at 60 Hz; moving: bodies not at rest, and particles; MB/s of the "
+      "from nothing.\nkbit/s at 60 Hz; moving: bodies not at rest, particles, characters; MB/s of "
+      "the "
       "whole "
       "state; us to code a quantised delta.\n\n",
       kTicks);
