@@ -212,7 +212,7 @@ std::string SimClient::lacks() const {
   const RoomHost& room = host_->room(persona_.room);
   if (!host_->listens(persona_.room)) return "has no server";
   const bool connected = wire_ && !wire_->down.is_reset() && wire_->era == room.era() &&
-                         !wire_->up.is_lost() && !wire_->down.is_lost();
+                         !wire_->up.finished() && !wire_->up.is_lost() && !wire_->down.is_lost();
   if (!connected || farewell_until_ns_ != kNever) return "has no connection";
   const client::Progress& progress = follower_->progress();
   if (progress.phase != client::Phase::kRunning) return "has no state yet";

@@ -50,6 +50,7 @@ class Pipe {
   std::span<const std::byte> read(std::size_t bytes_max);
   bool at_end() const { return finished_ && segments_.empty() && chronicle_->now_ns >= end_ns_; }
   bool is_reset() const { return reset_; }
+  bool finished() const { return finished_; }
   /// Nothing that is written will ever come.
   bool is_lost() const {
     return chronicle_->now_ns >= faults_.blackhole_from_ns && faults_.blackhole_until_ns == kNever;
