@@ -206,6 +206,12 @@ solver::World<2>* Simulation::planar() {
 solver::World<3>* Simulation::spatial() {
   return dimension() == 3 ? &std::get<1>(running_->built)->world : nullptr;
 }
+const solver::World<2>* Simulation::planar() const {
+  return dimension() == 2 ? &std::get<0>(running_->built)->world : nullptr;
+}
+const solver::World<3>* Simulation::spatial() const {
+  return dimension() == 3 ? &std::get<1>(running_->built)->world : nullptr;
+}
 
 static solver::WorldState<2>& part_of(solver::WorldState<2>& planar, solver::WorldState<3>&,
                                       const Built<2>&) {

@@ -84,6 +84,8 @@ class Simulation {
   /// the world is an input like any other and has to be the same everywhere.
   solver::World<2>* planar();
   solver::World<3>* spatial();
+  const solver::World<2>* planar() const;
+  const solver::World<3>* spatial() const;
 
   /// The whole state in memory, for rollback. `restore` brings back every bit.
   class Saved {

@@ -77,6 +77,7 @@ const std::vector<FuzzTarget>& targets() {
       {"scene-json", run_scene_json, scene_json_seeds},
       {"scene-binary", run_scene_binary, scene_binary_seeds},
       {"messages", run_messages, message_seeds},
+      {"state-delta", run_state_delta, state_delta_seeds},
   };
   return kTargets;
 }

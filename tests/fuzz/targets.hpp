@@ -36,6 +36,8 @@ void run_scene_binary(Input input);
 std::vector<Seed> scene_binary_seeds();
 void run_messages(Input input);
 std::vector<Seed> message_seeds();
+void run_state_delta(Input input);
+std::vector<Seed> state_delta_seeds();
 
 /// Ends the process with a sentence: the way in which a fuzzer learns of a failure.
 [[noreturn]] void fail(const std::string& why);
