@@ -38,8 +38,9 @@ struct Limits {
   std::size_t frames_kept_max = 3600;
   std::uint64_t keyframe_ticks = 60;
   std::size_t keyframe_bytes_max = std::size_t{8} << 20;
-  std::size_t baseline_bytes_max = std::size_t{4}
-                                   << 20;  ///< Of all states that may be differed from.
+  /// Of all states that snapshots may differ from, for each profile.
+  std::size_t baseline_bytes_max = std::size_t{4} << 20;
+  std::size_t snapshot_bytes_max = 1200;  ///< Of one quantised snapshot.
 };
 
 struct RoomOptions {

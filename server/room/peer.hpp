@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "protocol/codec.hpp"
+#include "protocol/state/state_feed.hpp"
 #include "server/room/admission.hpp"
 #include "server/room/options.hpp"
 #include "server/room/outbox.hpp"
@@ -57,7 +58,7 @@ struct Peer {
   std::uint32_t state_restarts = 0;
   std::uint64_t exact_tick = 0;  ///< Of its last exact state; older digests say nothing.
   std::uint64_t next_frame = 0;  ///< Tick of the next frame to queue for a lockstep client.
-  std::uint64_t acked_tick = 0;  ///< Of a snapshot client.
+  protocol::SentStates sent;     ///< Of a snapshot client.
   std::uint64_t free_bytes = 0;  ///< Of its state, which the room has asked for.
   bool desync_noticed = false;
 };

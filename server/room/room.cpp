@@ -40,8 +40,8 @@ Room::Room(RoomOptions options, scenes::Simulation simulation, RoomHooks hooks)
       delay_(options_.delay, options_.limits.input_delay_ticks, options_.tick_rate_millihertz),
       frames_(frames_kept(options_)),
       keyframes_(options_.limits.keyframe_bytes_max),
-      feed_(hooks_.coder == nullptr ? full_coder_ : *hooks_.coder,
-            options_.limits.baseline_bytes_max, ticks_of_3_s(options_.tick_rate_millihertz)) {
+      feed_({options_.limits.snapshot_bytes_max, options_.limits.baseline_bytes_max,
+             ticks_of_3_s(options_.tick_rate_millihertz)}) {
   keyframes_.push(states_.of(simulation_, digest_), 0);
 }
 

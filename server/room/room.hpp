@@ -53,8 +53,7 @@ struct RoomHooks {
   LogSink* log = nullptr;                       ///< May be none.
   /// Fills with bytes that nobody can guess. Empty: seats cannot be resumed.
   std::function<void(std::span<std::byte>)> random{};
-  DesyncInquiry* inquiry = nullptr;   ///< May be none.
-  const StateCoder* coder = nullptr;  ///< None: snapshots are whole states.
+  DesyncInquiry* inquiry = nullptr;  ///< May be none.
 };
 
 enum class RoomState : std::uint8_t { kRunning, kDrained, kTicksDone, kFaulted, kLogFailed };
@@ -243,7 +242,6 @@ class Room {
   ExactStates states_;
   FrameRing frames_;
   KeyframeRing keyframes_;
-  FullStateCoder full_coder_;
   SnapshotFeed feed_;
 
   bool log_noticed_ = false;

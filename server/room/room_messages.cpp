@@ -145,10 +145,7 @@ void Room::on_ack(PeerId id, Peer& peer, const protocol::Ack& ack) {
                       std::to_string(visible_tick(peer)));
   }
   if (peer.mode == protocol::Mode::kSnapshot) {
-    const bool known = !peer.state_due && ack.tick >= peer.exact_tick;
-    if (known && ack.tick <= simulation_.tick()) {
-      peer.acked_tick = std::max(peer.acked_tick, ack.tick);
-    }
+    if (!peer.state_due && ack.tick >= peer.exact_tick) (void)peer.sent.acknowledge(ack.tick);
     return;
   }
   // Of a client that came back with its state: the frames since are enough, if they are kept.

@@ -24,23 +24,15 @@ void Room::publish() {
 
 void Room::send_snapshot(Peer& peer) {
   if (peer.delay_ticks == 0) {
-    const auto state = states_.of(simulation_, digest_);
-    return peer.outbox.replace_snapshot(
-        feed_.message(peer.profile, peer.acked_tick, simulation_, *state));
+    const Shared snapshot = feed_.message(peer.profile, peer.sent, simulation_, digest_);
+    if (snapshot) peer.outbox.replace_snapshot(snapshot);
+    return;
   }
   // What it may see is no state that the room is in, so it sees those that are kept, whole.
   const auto state = keyframes_.at_or_before(visible_tick(peer));
   if (!state || state->tick() <= peer.exact_tick) return;
   peer.exact_tick = state->tick();
-  protocol::StateDelta delta;
-  delta.tick = state->tick();
-  delta.digest = state->digest();
-  auto bytes =
-      full_coder_.delta(protocol::Profile::kExact, nullptr,
-                        full_coder_.capture(protocol::Profile::kExact, simulation_, *state));
-  delta.bytes = std::move(*bytes);
-  peer.outbox.replace_snapshot(std::make_shared<const protocol::Bytes>(
-      protocol::encode(protocol::ServerMessage(std::move(delta)))));
+  peer.outbox.replace_snapshot(whole_state_delta(*state));
 }
 
 /// Every frame that the client may see and that was not queued yet: one a tick, or all since the
@@ -109,11 +101,11 @@ void Room::begin_state(PeerId id, Peer& peer) {
   if (!peer.playing()) return;
   peer.exact_tick = state->tick();
   peer.next_frame = state->tick() + 1;
-  peer.acked_tick = 0;
+  peer.sent = {};
   peer.outbox.begin_state(state);
   statistics_.encodes = states_.encodes() + feed_.encodes();
   if (peer.mode == protocol::Mode::kLockstep) return send_frames(id, peer);
-  if (!delayed) feed_.keep(peer.profile, simulation_, *state);
+  if (!delayed) feed_.hold(peer.profile, peer.sent, simulation_, digest_);
 }
 
 void Room::say_welcome(PeerId id, Peer& peer, std::uint64_t tick) {

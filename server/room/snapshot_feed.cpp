@@ -1,76 +1,79 @@
 #include "server/room/snapshot_feed.hpp"
 
-#include <algorithm>
+#include "protocol/state/exact_delta.hpp"
 
 namespace cycloid::server {
+namespace {
 
-ProfiledState FullStateCoder::capture(protocol::Profile, const scenes::Simulation&,
-                                      const ExactState& state) const {
-  return {state.tick(), state.digest(), state.bytes()};
+protocol::FeedOptions options_of(protocol::Profile profile, const SnapshotFeedLimits& limits) {
+  protocol::FeedOptions options;
+  options.profile = profile;
+  options.budget_bytes = limits.delta_bytes_max;
+  options.history = {limits.baseline_ticks_max, limits.baseline_bytes_max};
+  return options;
 }
 
-std::optional<protocol::Bytes> FullStateCoder::delta(protocol::Profile,
-                                                     const ProfiledState* baseline,
-                                                     const ProfiledState& now) const {
-  if (baseline != nullptr) return std::nullopt;
-  return now.bytes;
+Shared encoded(protocol::ServerMessage message) {
+  return std::make_shared<const protocol::Bytes>(protocol::encode(message));
 }
 
-const SnapshotFeed::Kept* SnapshotFeed::find(protocol::Profile profile, std::uint64_t tick) const {
-  const auto found = std::ranges::find_if(
-      kept_, [&](const Kept& kept) { return kept.profile == profile && kept.state.tick == tick; });
-  return found == kept_.end() ? nullptr : &*found;
+}  // namespace
+
+SnapshotFeed::SnapshotFeed(const SnapshotFeedLimits& limits)
+    : exact_(options_of(protocol::Profile::kExact, limits)),
+      quantised_(options_of(protocol::Profile::kQuantised, limits)) {}
+
+void SnapshotFeed::Channel::advance(const scenes::Simulation& simulation, std::uint64_t digest) {
+  if (has_tick && tick == simulation.tick()) return;
+  has_tick = true;
+  tick = simulation.tick();
+  made.clear();
+  states.advance(simulation, digest);
 }
 
-void SnapshotFeed::keep(protocol::Profile profile, const scenes::Simulation& simulation,
-                        const ExactState& state) {
-  if (find(profile, state.tick()) != nullptr) return;
-  kept_.push_back({profile, coder_.capture(profile, simulation, state)});
-  bytes_ += kept_.back().state.bytes.size();
-  evict(state.tick());
+Shared SnapshotFeed::message(protocol::Profile profile, protocol::SentStates& sent,
+                             const scenes::Simulation& simulation, std::uint64_t digest) {
+  Channel& from = channel(profile);
+  from.advance(simulation, digest);
+  const auto delta = from.states.delta(sent.baseline());
+  // What it was sent since may show something else, unless it has said that it has all of it.
+  if (!delta->changes && sent.unanswered() == 0) return nullptr;
+  sent.sent(delta->held);
+  Made& made = from.made[delta.get()];
+  if (!made.bytes) made = {delta, encoded(delta->message)};
+  return made.bytes;
 }
 
-void SnapshotFeed::evict(std::uint64_t now_tick) {
-  // The newest tick stays, or there would be nothing to send.
-  while (kept_.front().state.tick < now_tick &&
-         (bytes_ > bytes_max_ || now_tick - kept_.front().state.tick > kept_ticks_)) {
-    bytes_ -= kept_.front().state.bytes.size();
-    kept_.pop_front();
-  }
-}
-
-Shared SnapshotFeed::message(protocol::Profile profile, std::uint64_t baseline_tick,
-                             const scenes::Simulation& simulation, const ExactState& state) {
-  if (made_tick_ != state.tick()) made_.clear();
-  made_tick_ = state.tick();
-  keep(profile, simulation, state);
-  const Kept* baseline = nullptr;
-  if (baseline_tick != 0 && baseline_tick < state.tick()) baseline = find(profile, baseline_tick);
-  Shared& made = made_[{profile, baseline == nullptr ? 0 : baseline_tick}];
-  if (made) return made;
-
-  const ProfiledState& now = find(profile, state.tick())->state;
-  std::optional<protocol::Bytes> bytes;
-  if (baseline != nullptr) bytes = coder_.delta(profile, &baseline->state, now);
-  const bool whole = !bytes;
-  if (whole) bytes = coder_.delta(profile, nullptr, now);
-  ++encodes_;
-  protocol::StateDelta delta;
-  delta.tick = now.tick;
-  delta.baseline_tick = whole ? 0 : baseline_tick;
-  delta.digest = now.digest;
-  delta.profile = profile;
-  delta.bytes = std::move(*bytes);
-  made = std::make_shared<const protocol::Bytes>(
-      protocol::encode(protocol::ServerMessage(std::move(delta))));
-  return made;
+void SnapshotFeed::hold(protocol::Profile profile, protocol::SentStates& sent,
+                        const scenes::Simulation& simulation, std::uint64_t digest) {
+  Channel& from = channel(profile);
+  from.advance(simulation, digest);
+  sent.sent(from.states.now());
 }
 
 void SnapshotFeed::forget_all() {
-  kept_.clear();
-  made_.clear();
-  bytes_ = 0;
-  made_tick_ = 0;
+  for (Channel* each : {&exact_, &quantised_}) {
+    each->states.forget_all();
+    each->made.clear();
+    each->has_tick = false;
+  }
+}
+
+std::uint64_t SnapshotFeed::encodes() const {
+  return exact_.states.encodes() + quantised_.states.encodes();
+}
+
+std::size_t SnapshotFeed::bytes() const {
+  return exact_.states.bytes() + quantised_.states.bytes();
+}
+
+Shared whole_state_delta(const ExactState& state) {
+  protocol::StateDelta delta;
+  delta.tick = state.tick();
+  delta.digest = state.digest();
+  // An encoding that this process has made is canonical.
+  (void)protocol::encode_exact_delta({}, state.bytes(), delta.bytes);
+  return encoded(std::move(delta));
 }
 
 }  // namespace cycloid::server

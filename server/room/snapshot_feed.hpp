@@ -2,86 +2,64 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <deque>
 #include <map>
 #include <memory>
-#include <optional>
 #include <utility>
 
-#include "protocol/messages.hpp"
+#include "protocol/state/state_feed.hpp"
 #include "server/room/exact_states.hpp"
 
 namespace cycloid::server {
 
-/// The state after a tick as the clients of one profile hold it.
-struct ProfiledState {
-  std::uint64_t tick = 0;
-  std::uint64_t digest = 0;  ///< What StateDelta says for the profile.
-  protocol::Bytes bytes;
-};
-
-/// How states become the bytes of a StateDelta. Pure functions; called on the room's thread.
-class StateCoder {
- public:
-  virtual ~StateCoder() = default;
-  /// @pre `state` is that of `simulation` as it is.
-  virtual ProfiledState capture(protocol::Profile profile, const scenes::Simulation& simulation,
-                                const ExactState& state) const = 0;
-  /// Nothing where this baseline is of no use; with none (null) it always succeeds.
-  virtual std::optional<protocol::Bytes> delta(protocol::Profile profile,
-                                               const ProfiledState* baseline,
-                                               const ProfiledState& now) const = 0;
-};
-
-/// Codes every state whole, as World::encode, for both profiles.
-class FullStateCoder final : public StateCoder {
- public:
-  ProfiledState capture(protocol::Profile profile, const scenes::Simulation& simulation,
-                        const ExactState& state) const override;
-  std::optional<protocol::Bytes> delta(protocol::Profile profile, const ProfiledState* baseline,
-                                       const ProfiledState& now) const override;
+struct SnapshotFeedLimits {
+  std::size_t delta_bytes_max = 1200;  ///< Of a quantised one; an exact one is as large as it is.
+  std::size_t baseline_bytes_max = 4096;  ///< Of all states that may be differed from.
+  std::uint64_t baseline_ticks_max = 180;
 };
 
 /// The snapshots of a room's snapshot clients: each the difference from what its client has
 /// acknowledged, made once for all clients with that baseline and profile.
-///
-/// States that may still be acknowledged are kept for 3 s and within a budget of bytes; who
-/// acknowledges none of them is sent the whole state. Source: the rules of DDNet.
 class SnapshotFeed {
  public:
-  /// @pre `kept_ticks` > 0; the coder outlives the feed.
-  SnapshotFeed(const StateCoder& coder, std::size_t bytes_max, std::uint64_t kept_ticks)
-      : coder_(coder), bytes_max_(bytes_max), kept_ticks_(kept_ticks) {}
+  explicit SnapshotFeed(const SnapshotFeedLimits& limits);
 
-  /// The StateDelta for a client that has acknowledged `baseline_tick` (0: nothing), after the tick
-  /// of `state`. The state is kept as a baseline.
-  Shared message(protocol::Profile profile, std::uint64_t baseline_tick,
-                 const scenes::Simulation& simulation, const ExactState& state);
-  /// The client is sent this state by other means, and may acknowledge it.
-  void keep(protocol::Profile profile, const scenes::Simulation& simulation,
-            const ExactState& state);
+  /// The StateDelta for a client after the simulation's tick, noted in `sent`. Null, and nothing is
+  /// noted, where the client holds all that it would show.
+  Shared message(protocol::Profile profile, protocol::SentStates& sent,
+                 const scenes::Simulation& simulation, std::uint64_t digest);
+  /// The client is sent the exact state by other means, and may acknowledge it.
+  void hold(protocol::Profile profile, protocol::SentStates& sent,
+            const scenes::Simulation& simulation, std::uint64_t digest);
+  /// After a rewind: ticks come again, with other states.
   void forget_all();
 
-  std::uint64_t encodes() const { return encodes_; }  ///< Deltas made, whoever got them.
-  std::size_t bytes() const { return bytes_; }
-  std::size_t baselines() const { return kept_.size(); }
+  std::uint64_t encodes() const;  ///< Deltas made, whoever got them.
+  std::size_t bytes() const;      ///< Of the baselines that are kept.
 
  private:
-  struct Kept {
-    protocol::Profile profile;
-    ProfiledState state;
+  struct Made {
+    std::shared_ptr<const protocol::FeedDelta> delta;
+    Shared bytes;
   };
-  const Kept* find(protocol::Profile profile, std::uint64_t tick) const;
-  void evict(std::uint64_t now_tick);
+  /// The states of one profile.
+  struct Channel {
+    explicit Channel(const protocol::FeedOptions& options) : states(options) {}
+    void advance(const scenes::Simulation& simulation, std::uint64_t digest);
 
-  const StateCoder& coder_;
-  std::size_t bytes_max_;
-  std::uint64_t kept_ticks_;
-  std::deque<Kept> kept_;  ///< Ticks ascending.
-  std::size_t bytes_ = 0;
-  std::uint64_t made_tick_ = 0;  ///< Of `made_`.
-  std::map<std::pair<protocol::Profile, std::uint64_t>, Shared> made_;
-  std::uint64_t encodes_ = 0;
+    protocol::StateFeed states;
+    bool has_tick = false;
+    std::uint64_t tick = 0;  ///< Of `made`.
+    std::map<const protocol::FeedDelta*, Made> made;
+  };
+  Channel& channel(protocol::Profile profile) {
+    return profile == protocol::Profile::kExact ? exact_ : quantised_;
+  }
+
+  Channel exact_;
+  Channel quantised_;
 };
+
+/// A StateDelta from nothing that holds an exact state whole.
+Shared whole_state_delta(const ExactState& state);
 
 }  // namespace cycloid::server

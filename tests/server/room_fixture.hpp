@@ -14,6 +14,7 @@
 #include <vector>
 
 #include "protocol/codec.hpp"
+#include "protocol/state/exact_delta.hpp"
 #include "scenes/catalogue.hpp"
 #include "server/room/room.hpp"
 
@@ -241,7 +242,9 @@ struct Mirror {
       if (const auto* delta = std::get_if<protocol::StateDelta>(&message)) {
         ASSERT_EQ(delta->baseline_tick, 0u) << "a whole state was expected";
         ASSERT_FALSE(loading) << "a snapshot before the state that it may differ from";
-        load(delta->bytes, delta->tick, delta->digest);
+        const auto state = protocol::decode_exact_delta({}, delta->bytes, std::size_t{1} << 24);
+        ASSERT_TRUE(state);
+        load(*state, delta->tick, delta->digest);
         ++deltas;
       }
       if (const auto* frame = std::get_if<protocol::InputFrame>(&message)) {
