@@ -23,10 +23,10 @@ static std::int16_t velocity_steps(float value) {
   return static_cast<std::int16_t>(steps_of(value, kVelocityStep, kVelocityLimit));
 }
 
-template <class Vector>
-static std::array<std::int32_t, 3> quantised_position(const Vector& from, std::size_t axes) {
+template <int D>
+static std::array<std::int32_t, 3> quantised_position(const solver::Vec<D>& from) {
   std::array<std::int32_t, 3> into{};
-  for (std::size_t i = 0; i < axes; ++i) into[i] = position_steps(from[static_cast<int>(i)]);
+  for (int i = 0; i < D; ++i) into[static_cast<std::size_t>(i)] = position_steps(from[i]);
   return into;
 }
 
@@ -49,7 +49,7 @@ static QuantisedBody quantised(const solver::Body<D>& body, std::uint32_t index,
   QuantisedBody into;
   into.index = index;
   into.generation = body.generation;
-  into.position = quantised_position(body.position + from_centre, D);
+  into.position = quantised_position<D>(body.position + from_centre);
   into.rotation = quantise_rotation(body.rotation);
   into.at_rest = !solver::is_active(body);
   if (options.velocities && !into.at_rest) put_velocities(body, from_centre, into);
@@ -62,7 +62,7 @@ static QuantisedBody quantised(const solver::Particle<D>& particle, std::uint32_
   QuantisedBody into;
   into.index = index;
   into.generation = particle.generation;
-  into.position = quantised_position(particle.position, D);
+  into.position = quantised_position<D>(particle.position);
   if (options.velocities)
     for (int i = 0; i < D; ++i)
       into.velocity[static_cast<std::size_t>(i)] = velocity_steps(particle.velocity[i]);

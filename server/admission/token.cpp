@@ -24,8 +24,9 @@ static_assert(kFixedBytes + protocol::kRoomNameBytesMax + kIdentityBytesMax <=
 
 std::vector<std::byte> signed_bytes(std::span<const std::byte> body) {
   const auto purpose = std::as_bytes(std::span(kSignedFor));
-  std::vector<std::byte> bytes(purpose.begin(), purpose.end());
-  bytes.insert(bytes.end(), body.begin(), body.end());
+  std::vector<std::byte> bytes(purpose.size() + body.size());
+  const auto rest = std::copy(purpose.begin(), purpose.end(), bytes.begin());
+  std::copy(body.begin(), body.end(), rest);
   return bytes;
 }
 
@@ -116,8 +117,9 @@ std::vector<std::byte> sign_token(const AdmissionToken& token, const SigningKey&
 
 std::vector<std::byte> sign_token_bytes(std::span<const std::byte> bytes, const SigningKey& key) {
   const Signature signature = key.sign(signed_bytes(bytes));
-  std::vector<std::byte> token(signature.begin(), signature.end());
-  token.insert(token.end(), bytes.begin(), bytes.end());
+  std::vector<std::byte> token(signature.size() + bytes.size());
+  const auto rest = std::copy(signature.begin(), signature.end(), token.begin());
+  std::copy(bytes.begin(), bytes.end(), rest);
   return token;
 }
 
