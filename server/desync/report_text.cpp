@@ -39,7 +39,8 @@ void add_values(const Json& json, std::string& text) {
     text += "  and " + std::to_string(all - shown) + " more numbers, ";
   else if (all > 0)
     text += "  and no other number, ";
-  if (all > 0) text += "in " + number_of(json, "objects") + " objects\n";
+  const std::string objects = number_of(json, "objects");
+  if (all > 0) text += "in " + objects + (objects == "1" ? " object\n" : " objects\n");
 }
 
 void add_sides(const Json& json, std::string& text) {

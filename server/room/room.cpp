@@ -152,7 +152,7 @@ void Room::refuse(PeerId id, Peer& peer, protocol::Refusal code, const std::stri
 void Room::end(RoomState state, const std::string& reason) {
   state_ = state;
   end_reason_ = reason;
-  if (hooks_.log != nullptr) hooks_.log->close({simulation_.tick(), digest_});
+  if (hooks_.log != nullptr) hooks_.log->close({simulation_.tick(), digest_, {}});
   check_log();
   const protocol::ServerMessage digest = protocol::Digest{simulation_.tick(), digest_};
   const bool digest_sent = simulation_.tick() % options_.limits.digest_ticks == 0;

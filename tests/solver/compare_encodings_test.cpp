@@ -13,7 +13,9 @@ namespace {
 
 /// Two balls that lie on a half-space.
 World<2> two_balls() {
-  World<2> world = std::move(World<2>::create({}).value());
+  WorldDef<2> def;
+  def.gravity[1] = -10.0f;
+  World<2> world = std::move(World<2>::create(def).value());
   ShapeDef<2> plane;
   plane.kind = ShapeKind::kHalfSpace;
   plane.normal[1] = 1.0f;
