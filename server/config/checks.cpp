@@ -63,11 +63,13 @@ void check_tokens(ServerConfig& config, const Complain& complain) {
   }
   std::ifstream stream(file);
   std::string line;
+  bool mistaken = false;
   for (int number = 1; std::getline(stream, line); ++number) {
     if (line.empty() || line[0] == '#') continue;
     const auto parsed = PublicKey::parse(line);
     if (parsed) config.host.gate.keys.push_back(*parsed);
     if (!parsed) {
+      mistaken = true;
       complain(key, file + ":" + std::to_string(number) +
                         ": it is no public key: \"ed25519-public:\" and 64 hexadecimal digits");
     }

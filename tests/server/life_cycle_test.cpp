@@ -99,7 +99,7 @@ TEST(RoomPhases, HoldWheneverARoomIsMade) {
       EXPECT_LE(start - now, 16'666'667);
       const std::int64_t phase = 16'666'666ll * phase_of_slot(slot) >> 32;
       const protocol::Schedule raster(kEpoch + phase, kRate);
-      const auto n = static_cast<std::uint64_t>((start - kEpoch) / 1'000'000'000.0 * 60.0 + 0.25);
+      const auto n = static_cast<std::uint64_t>(static_cast<double>(start - kEpoch) * 60e-9 + 0.25);
       const std::int64_t off = std::min(std::abs(start - raster.deadline_ns(n)),
                                         std::abs(start - raster.deadline_ns(n > 0 ? n - 1 : 0)));
       EXPECT_EQ(off, 0) << after << ' ' << slot;

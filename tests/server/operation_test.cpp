@@ -112,7 +112,9 @@ TEST_F(OperationTest, MetricsAreWhatPrometheusReads) {
     std::string mark, keyword, name;
     if (line.starts_with("#")) {
       words >> mark >> keyword >> name;
-      if (keyword == "TYPE") EXPECT_TRUE(typed.insert(name).second) << "twice: " << name;
+      if (keyword == "TYPE") {
+        EXPECT_TRUE(typed.insert(name).second) << "twice: " << name;
+      }
       continue;
     }
     std::smatch match;

@@ -130,7 +130,7 @@ TEST(Serve, AClientIsWelcomedAndHearsTheMatch) {
   const auto welcome = peer.wait_for<protocol::Welcome>();
   ASSERT_TRUE(welcome);
   EXPECT_EQ(welcome->seat, 1);
-  const auto snapshot = peer.wait_for<protocol::Snapshot>();
+  const auto snapshot = peer.wait_for<protocol::SnapshotPart>();
   ASSERT_TRUE(snapshot);
   EXPECT_EQ(snapshot->tick, welcome->tick);
   for (std::uint64_t tick = welcome->tick + 1; tick <= welcome->tick + 10; ++tick) {
@@ -290,7 +290,7 @@ TEST(Serve, APeerThatReadsNothingIsClosed) {
   slow.send(greeting(0));
   Peer good(server.port());
   good.send(greeting(1));
-  ASSERT_TRUE(good.wait_for<protocol::Snapshot>());
+  ASSERT_TRUE(good.wait_for<protocol::SnapshotPart>());
   std::uint64_t last = 0;
   const auto deadline = std::chrono::steady_clock::now() + kPatience;
   bool left = false;
