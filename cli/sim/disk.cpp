@@ -4,7 +4,7 @@
 
 namespace cycloid::sim {
 
-DiskWrite Disk::write(std::uint64_t file, std::span<const std::byte> bytes) {
+DiskWrite SimDisk::write(std::uint64_t file, std::span<const std::byte> bytes) {
   if (killed_) return {bytes.size(), DiskError::kNone};
   if (random_.chance(faults_.interrupted_per_million)) {
     chronicle_->count(Event::kInterrupted);
@@ -39,7 +39,7 @@ DiskWrite Disk::write(std::uint64_t file, std::span<const std::byte> bytes) {
   return {killed_ ? bytes.size() : taken, DiskError::kNone};
 }
 
-DiskError Disk::sync(std::uint64_t file) {
+DiskError SimDisk::sync(std::uint64_t file) {
   if (killed_) return DiskError::kNone;
   File& synced = files_.at(file);
   if (random_.chance(faults_.interrupted_per_million)) {
@@ -55,7 +55,7 @@ DiskError Disk::sync(std::uint64_t file) {
   return DiskError::kNone;
 }
 
-bool Disk::stalled() {
+bool SimDisk::stalled() {
   if (chronicle_->now_ns < stalled_until_ns_) return true;
   if (!random_.chance(faults_.stall_per_million)) return false;
   stalled_until_ns_ = chronicle_->now_ns + faults_.stall_ns;
@@ -63,7 +63,7 @@ bool Disk::stalled() {
   return true;
 }
 
-void Disk::restart(Death death) {
+void SimDisk::restart(Death death) {
   if (death == Death::kPower) {
     for (auto& [name, file] : files_) lose_unsynced(file);
   }
@@ -71,7 +71,7 @@ void Disk::restart(Death death) {
   stalled_until_ns_ = 0;
 }
 
-void Disk::lose_unsynced(File& file) {
+void SimDisk::lose_unsynced(File& file) {
   const std::size_t dirty = file.bytes.size() - file.synced;
   if (dirty == 0) return;
   file.bytes.resize(file.synced + random_.below(dirty + 1));
@@ -87,7 +87,7 @@ void Disk::lose_unsynced(File& file) {
   }
 }
 
-protocol::Bytes Disk::flipped(std::uint64_t file) {
+protocol::Bytes SimDisk::flipped(std::uint64_t file) {
   protocol::Bytes bytes = files_.at(file).bytes;
   const std::size_t byte = random_.below(bytes.size());
   bytes[byte] ^= static_cast<std::byte>(1u << random_.below(8));

@@ -38,9 +38,9 @@ enum class Death : std::uint8_t {
 };
 
 /// The disk of the server's machine: append-only files, with a cache that a power cut empties.
-class Disk {
+class SimDisk {
  public:
-  Disk(const DiskFaults& faults, Random random, Chronicle& chronicle)
+  SimDisk(const DiskFaults& faults, Random random, Chronicle& chronicle)
       : faults_(faults), random_(random), chronicle_(&chronicle) {}
 
   /// A new file with bytes that are on the disk for good: a server whose log cannot begin does not

@@ -20,7 +20,7 @@ scenes::Simulation simulation_of(const scenes::Scene& scene) {
 }  // namespace
 
 RoomHost::RoomHost(const Settings& settings, const scenes::Scene& scene, std::size_t number,
-                   Disk& disk, Chronicle& chronicle)
+                   SimDisk& disk, Chronicle& chronicle)
     : settings_(&settings),
       scene_(&scene),
       number_(number),

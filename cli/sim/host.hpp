@@ -23,7 +23,7 @@ namespace cycloid::sim {
 /// match of its own, with its own log.
 class RoomHost {
  public:
-  RoomHost(const Settings& settings, const scenes::Scene& scene, std::size_t number, Disk& disk,
+  RoomHost(const Settings& settings, const scenes::Scene& scene, std::size_t number, SimDisk& disk,
            Chronicle& chronicle);
 
   /// Begins the next era.
@@ -74,7 +74,7 @@ class RoomHost {
   const Settings* settings_;
   const scenes::Scene* scene_;
   std::size_t number_;
-  Disk* disk_;
+  SimDisk* disk_;
   Chronicle* chronicle_;
   std::uint64_t scene_digest_ = 0;
   std::vector<std::byte> scene_bytes_;
@@ -117,7 +117,7 @@ class Host {
   const Settings* settings_;
   Random random_;
   Chronicle* chronicle_;
-  Disk disk_;
+  SimDisk disk_;
   std::vector<RoomHost> rooms_;
   std::vector<std::int64_t> pauses_ns_;  ///< When they begin; the last first.
   std::vector<std::int64_t> deaths_ns_;

@@ -10,7 +10,7 @@ constexpr std::uint64_t kTickOfPlant = 30;
 
 }  // namespace
 
-SimLog::SimLog(Disk& disk, std::uint64_t file, const protocol::LogHeader& header,
+SimLog::SimLog(SimDisk& disk, std::uint64_t file, const protocol::LogHeader& header,
                const Options& options, Chronicle& chronicle)
     : disk_(&disk), file_(file), options_(options), chronicle_(&chronicle) {
   encoder_.emplace(header, queue_);

@@ -27,8 +27,8 @@ class SimLog final : public server::LogSink {
     Plant plant = Plant::kNone;
   };
   /// Its header is on the disk at once, whatever the disk's faults.
-  SimLog(Disk& disk, std::uint64_t file, const protocol::LogHeader& header, const Options& options,
-         Chronicle& chronicle);
+  SimLog(SimDisk& disk, std::uint64_t file, const protocol::LogHeader& header,
+         const Options& options, Chronicle& chronicle);
 
   void tick(const protocol::LogTick& tick) override;
   void close(const protocol::LogFooter& footer) override;
@@ -51,7 +51,7 @@ class SimLog final : public server::LogSink {
   void sync();
   void fail(const std::string& what);
 
-  Disk* disk_;
+  SimDisk* disk_;
   std::uint64_t file_;
   Options options_;
   Chronicle* chronicle_;

@@ -51,7 +51,7 @@ Host::Host(HostOptions options)
   };
   gatehouse.on_admitted = [this](Entrant entrant) { on_admitted(std::move(entrant)); };
   gatehouse_.emplace(accept_strand_, meters_, std::move(gatehouse));
-  options_.log_calls = metered(std::move(options_.log_calls), meters_);
+  options_.disk = metered(std::move(options_.disk), meters_);
   start_rooms();
 }
 
@@ -68,8 +68,8 @@ RoomSite Host::site() {
   const auto gone_handler = [this](const std::string& name, const ServeReport& report) {
     gone(name, report);
   };
-  return RoomSite{io_,       slow_,     meters_,     options_.logger, options_.log_calls,
-                  epoch_ns_, turn_away, gone_handler};
+  return RoomSite{io_,           slow_,     meters_,   options_.logger,
+                  options_.disk, epoch_ns_, turn_away, gone_handler};
 }
 
 void Host::start_rooms() {

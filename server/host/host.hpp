@@ -45,9 +45,9 @@ struct HostOptions {
   HostLimits limits;
   std::vector<NamedRoom> rooms;                   ///< Made before the first connection.
   std::map<std::string, RoomTemplate> templates;  ///< What others are made of.
-  LogCalls log_calls = system_log_calls();
-  std::shared_ptr<spdlog::logger> logger;  ///< None: lines on stderr.
-  std::function<void()> on_reload;         ///< SIGHUP; on the accept strand.
+  std::shared_ptr<Disk> disk = system_disk();     ///< Of the logs.
+  std::shared_ptr<spdlog::logger> logger;         ///< None: lines on stderr.
+  std::function<void()> on_reload;                ///< SIGHUP; on the accept strand.
 };
 
 struct HostReport {

@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "protocol/log_format.hpp"
 #include "scenes/catalogue.hpp"
 #include "server/admission/random.hpp"
 #include "server/host/process_time.hpp"
@@ -67,7 +68,11 @@ HostedRoom::HostedRoom(RoomSite site, std::string name, RoomSettings settings, s
       simulation_(make_simulation(settings_)) {
   rate_millihertz_ = rate_of(settings_, *simulation_);
   seats_ = simulation_->seats();
-  log_ = std::make_unique<RoomLog>(open_room_log(settings_, name_, site_.log_calls), site_.slow);
+  protocol::LogHeader header = protocol::log_header_of(settings_.scene);
+  header.scene_name = settings_.scene_name;
+  header.tick_rate_millihertz = rate_millihertz_;
+  log_ = std::make_unique<RoomLog>(room_log_place(settings_, name_, site_.disk), std::move(header),
+                                   site_.slow);
   meters_.tick_ns = tick_ns();
   meters_.durable.set(1);
 }

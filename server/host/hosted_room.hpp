@@ -28,8 +28,8 @@ struct RoomSite {
   asio::thread_pool& slow;  ///< For what waits for a disk.
   std::shared_ptr<HostMeters> meters;
   std::shared_ptr<spdlog::logger> logger;
-  LogCalls log_calls;
-  std::int64_t epoch_ns = 0;  ///< Where the rasters of all rooms begin.
+  std::shared_ptr<Disk> disk;  ///< Of the logs.
+  std::int64_t epoch_ns = 0;   ///< Where the rasters of all rooms begin.
   /// A connection that cannot come in, and why. Any thread.
   std::function<void(Entrant, const protocol::Refused&)> turn_away;
   /// The room is over and nothing of it runs any more. Any thread.

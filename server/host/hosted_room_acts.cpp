@@ -111,7 +111,7 @@ void HostedRoom::rewind(std::uint64_t tick, Done done) {
 }
 
 void HostedRoom::rotate_log(Done done) {
-  ask(std::move(done), [this](Room&) { return log_->rotate(another_log_path(settings_, name_)); });
+  ask(std::move(done), [this](Room&) { return log_->rotate(); });
 }
 
 void HostedRoom::set_limits(const Limits& limits) {

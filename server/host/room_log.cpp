@@ -6,34 +6,11 @@
 #include <system_error>
 #include <utility>
 
-#include "scenes/catalogue.hpp"
+#include "protocol/build_text.hpp"
 #include "server/host/process_time.hpp"
 
 namespace cycloid::server {
 namespace {
-
-/// Format 1 of the log cannot go on in another file; its writer then has no such function.
-template <class Writer>
-ActResult rotate_to(Writer& writer, const std::string& path) {
-  if constexpr (requires { writer.rotate(path); }) {
-    const std::error_code error = writer.rotate(path);
-    return error ? ActResult{409, "rotate: " + path + ": " + error.message()} : ActResult{};
-  } else {
-    return {501, "rotate: a log of this build begins at tick 0, so it cannot go on in a new file"};
-  }
-}
-
-/// "ROOM-SECONDS-SALT.log": new for each room, whatever was made before.
-std::string new_log_path(const RoomSettings& settings, const std::string& room,
-                         std::uint64_t salt) {
-  if (settings.log_directory.empty()) return "";
-  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
-  const auto seconds = std::chrono::duration_cast<std::chrono::seconds>(since_epoch).count();
-  std::string name = room;
-  for (char& c : name) c = c == ':' ? '-' : c;
-  name += "-" + std::to_string(seconds) + "-" + std::to_string(salt & 0xffffff) + ".log";
-  return std::filesystem::path(settings.log_directory) / name;
-}
 
 std::uint64_t random_number() {
   std::random_device random;
@@ -41,19 +18,53 @@ std::uint64_t random_number() {
   return (high << 32) | random();
 }
 
-}  // namespace
-
-std::string another_log_path(const RoomSettings& settings, const std::string& room) {
-  return new_log_path(settings, room, random_number());
+std::int64_t unix_now_ns() {
+  const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
+  return std::chrono::duration_cast<std::chrono::nanoseconds>(since_epoch).count();
 }
 
-RoomLog::RoomLog(std::unique_ptr<LogWriter> writer, asio::thread_pool& slow)
-    : writer_(std::move(writer)), slow_(slow) {}
+}  // namespace
+
+RoomLogPlace room_log_place(const RoomSettings& settings, const std::string& room,
+                            std::shared_ptr<Disk> disk) {
+  return {room, settings.log, settings.log_directory, settings.log_sync, std::move(disk)};
+}
+
+RoomLog::RoomLog(RoomLogPlace place, protocol::LogHeader header, asio::thread_pool& slow)
+    : place_(std::move(place)), header_(std::move(header)), slow_(slow) {
+  header_.log_id = random_number();
+  header_.salt = random_number();
+  header_.start_unix_ns = unix_now_ns();
+  header_.build = protocol::build_text();
+  header_.room = place_.room;
+  const std::string path = place_.path.empty() ? new_path(header_.salt) : place_.path;
+  if (!path.empty()) open(path, nullptr);
+}
 
 RoomLog::~RoomLog() = default;
 
+/// "ROOM-SECONDS-SALT.log": new for each, whatever was made before.
+std::string RoomLog::new_path(std::uint64_t salt) const {
+  if (place_.directory.empty()) return "";
+  std::string name = place_.room;
+  for (char& c : name) c = c == ':' ? '-' : c;
+  name += "-" + std::to_string(unix_now_ns() / 1'000'000'000) + "-" +
+          std::to_string(salt & 0xffffff) + ".log";
+  return std::filesystem::path(place_.directory) / name;
+}
+
+void RoomLog::open(const std::string& path, const protocol::LogKeyframe* first) {
+  LogWriterOptions options;
+  options.path = path;
+  options.sync = place_.sync;
+  options.disk = place_.disk;
+  writer_ = std::make_shared<LogWriter>(std::move(options), header_, first);
+}
+
 void RoomLog::tick(const protocol::LogTick& tick) {
-  if (writer_ != nullptr) writer_->tick(tick);
+  if (writer_ == nullptr) return;
+  writer_->tick(tick);
+  last_ = {tick.frame.tick, tick.digest, {}};
 }
 
 bool RoomLog::wants_keyframe(std::uint64_t tick) const {
@@ -64,19 +75,39 @@ void RoomLog::keyframe(std::uint64_t tick, std::uint64_t digest, std::span<const
   if (writer_ != nullptr) writer_->keyframe(tick, digest, state);
 }
 
-void RoomLog::branch(std::uint64_t tick, std::uint64_t digest) {
-  if (writer_ != nullptr) writer_->branch(tick, digest);
+void RoomLog::branch(const protocol::LogTick& from, std::span<const std::byte> state) {
+  if (writer_ == nullptr) return;
+  close_writer(last_);
+  header_.parent_log_id = std::exchange(header_.log_id, random_number());
+  header_.salt = random_number();
+  header_.branch_tick = from.frame.tick;
+  header_.start_unix_ns = unix_now_ns();
+  const protocol::LogKeyframe first{
+      from.frame.tick, from.digest, from.frame.seats, {state.begin(), state.end()}};
+  const std::string beside = place_.path + "-from-" + std::to_string(from.frame.tick) + "-" +
+                             std::to_string(header_.salt & 0xffffff);
+  try {
+    open(place_.directory.empty() ? beside : new_path(header_.salt), &first);
+  } catch (const std::system_error& failure) {
+    writer_ = nullptr;
+    branch_error_ = failure.what();
+  }
 }
 
-ActResult RoomLog::rotate(const std::string& path) {
+ActResult RoomLog::rotate() {
+  const std::string path = new_path(random_number());
   if (writer_ == nullptr || path.empty()) {
     return {409, "rotate: the room writes no log into a log_directory"};
   }
-  return rotate_to(*writer_, path);
+  const std::error_code error = writer_->rotate(path);
+  return error ? ActResult{409, "rotate: " + path + ": " + error.message()} : ActResult{};
 }
 
 void RoomLog::close(const protocol::LogFooter& footer) {
-  if (writer_ == nullptr) return;
+  if (writer_ != nullptr) close_writer(footer);
+}
+
+void RoomLog::close_writer(const protocol::LogFooter& footer) {
   ++*pending_;
   auto work = [writer = writer_, footer, pending = pending_] {
     writer->close(footer);
@@ -85,29 +116,49 @@ void RoomLog::close(const protocol::LogFooter& footer) {
   asio::post(slow_, std::move(work));
 }
 
-std::unique_ptr<LogWriter> open_room_log(const RoomSettings& settings, const std::string& room,
-                                         const LogCalls& calls) {
-  if (settings.log.empty() && settings.log_directory.empty()) return nullptr;
-  protocol::LogHeader header;
-  header.scene_digest = scenes::scene_digest(settings.scene);
-  header.scene_name = settings.scene_name;
-  header.scene = scenes::to_binary(settings.scene);
-  header.salt = random_number();
-  LogWriterOptions writer;
-  writer.path = settings.log.empty() ? new_log_path(settings, room, header.salt) : settings.log;
-  writer.sync = settings.log_sync;
-  writer.calls = calls;
-  return std::make_unique<LogWriter>(std::move(writer), header);
+bool RoomLog::durable() const {
+  return branch_error_.empty() && (writer_ == nullptr || writer_->durable());
 }
 
-LogCalls metered(LogCalls calls, std::shared_ptr<HostMeters> meters) {
-  calls.sync = [sync = std::move(calls.sync), meters = std::move(meters)](int file) {
+std::string RoomLog::error() const {
+  if (!branch_error_.empty()) return branch_error_;
+  return writer_ == nullptr ? "" : writer_->error();
+}
+
+namespace {
+
+class MeteredDisk final : public Disk {
+ public:
+  MeteredDisk(std::shared_ptr<Disk> disk, std::shared_ptr<HostMeters> meters)
+      : disk_(std::move(disk)), meters_(std::move(meters)) {}
+
+  int create(const std::string& path, int& file) override { return disk_->create(path, file); }
+  bool exists(const std::string& path) override { return disk_->exists(path); }
+  int write(int file, std::span<const std::byte> bytes, std::size_t& written) override {
+    return disk_->write(file, bytes, written);
+  }
+  int sync(int file) override {
     const std::int64_t begin_ns = process_now_ns();
-    const int result = sync(file);
-    meters->log_sync.add(static_cast<std::uint64_t>(process_now_ns() - begin_ns));
+    const int result = disk_->sync(file);
+    meters_->log_sync.add(static_cast<std::uint64_t>(process_now_ns() - begin_ns));
     return result;
-  };
-  return calls;
+  }
+  int close(int file) override { return disk_->close(file); }
+  int rename(const std::string& from, const std::string& to) override {
+    return disk_->rename(from, to);
+  }
+  int remove(const std::string& path) override { return disk_->remove(path); }
+  int sync_folder(const std::string& path) override { return disk_->sync_folder(path); }
+
+ private:
+  std::shared_ptr<Disk> disk_;
+  std::shared_ptr<HostMeters> meters_;
+};
+
+}  // namespace
+
+std::shared_ptr<Disk> metered(std::shared_ptr<Disk> disk, std::shared_ptr<HostMeters> meters) {
+  return std::make_shared<MeteredDisk>(std::move(disk), std::move(meters));
 }
 
 }  // namespace cycloid::server

@@ -2,21 +2,38 @@
 
 #include <asio.hpp>
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <span>
+#include <string>
 
+#include "protocol/log/values.hpp"
 #include "server/host/act_result.hpp"
 #include "server/host/room_settings.hpp"
 #include "server/operation/meters.hpp"
 
 namespace cycloid::server {
 
-/// Between a room and the writer of its log: closes the log on another thread, because a close
-/// waits for the disk and other rooms share this one.
+/// Where the log of a room goes, and by which disk.
+struct RoomLogPlace {
+  std::string room;
+  std::string path;       ///< The first file; "": one of `directory`.
+  std::string directory;  ///< For a file of its own for every room, rotation and branch; "": none.
+  LogSync sync = LogSync::kInterval;
+  std::shared_ptr<Disk> disk;
+};
+
+RoomLogPlace room_log_place(const RoomSettings& settings, const std::string& room,
+                            std::shared_ptr<Disk> disk);
+
+/// Between a room and the writer of its log: closes files on another thread, because a close waits
+/// for the disk and other rooms share this one. All calls are the room's, on its strand.
 class RoomLog final : public LogSink {
  public:
-  /// @param writer  May be none: then nothing is kept.
-  RoomLog(std::unique_ptr<LogWriter> writer, asio::thread_pool& slow);
+  /// Opens the log where the place names one.
+  /// @param header  With the scene and its rate; ids, times and the build are filled in.
+  /// @throws std::system_error where the file exists already or cannot be made.
+  RoomLog(RoomLogPlace place, protocol::LogHeader header, asio::thread_pool& slow);
   RoomLog(const RoomLog&) = delete;
   RoomLog& operator=(const RoomLog&) = delete;
   ~RoomLog() override;
@@ -25,32 +42,34 @@ class RoomLog final : public LogSink {
   bool wants_keyframe(std::uint64_t tick) const override;
   void keyframe(std::uint64_t tick, std::uint64_t digest,
                 std::span<const std::byte> state) override;
-  void branch(std::uint64_t tick, std::uint64_t digest) override;
+  /// Closes the file and goes on in one that names it as its parent. Where that cannot be made the
+  /// log has ended.
+  void branch(const protocol::LogTick& from, std::span<const std::byte> state) override;
   /// Returns at once; `settled` says when it is done.
   void close(const protocol::LogFooter& footer) override;
-  bool durable() const override { return writer_ == nullptr || writer_->durable(); }
-  std::string error() const override { return writer_ == nullptr ? "" : writer_->error(); }
-  /// Goes on in a new file. Refused where there is no log, or a log cannot go on in another.
-  ActResult rotate(const std::string& path);
+  bool durable() const override;
+  std::string error() const override;
+  /// Goes on in a new file of the directory. Refused where there is none.
+  ActResult rotate();
 
   /// Whether nothing more happens on the other thread.
   bool settled() const { return *pending_ == 0; }
 
  private:
-  std::shared_ptr<LogWriter> writer_;
+  std::string new_path(std::uint64_t salt) const;
+  void open(const std::string& path, const protocol::LogKeyframe* first);
+  void close_writer(const protocol::LogFooter& footer);
+
+  RoomLogPlace place_;
+  protocol::LogHeader header_;
   asio::thread_pool& slow_;
+  std::shared_ptr<LogWriter> writer_;
+  protocol::LogFooter last_;  ///< The last tick that was handed over.
+  std::string branch_error_;
   std::shared_ptr<std::atomic<int>> pending_ = std::make_shared<std::atomic<int>>(0);
 };
 
-/// Opens the log that the settings ask for; none where they ask for none.
-/// @throws std::system_error where the file exists already or cannot be made.
-std::unique_ptr<LogWriter> open_room_log(const RoomSettings& settings, const std::string& room,
-                                         const LogCalls& calls);
-
-/// A file of its own for the room in the log directory; "" where there is none.
-std::string another_log_path(const RoomSettings& settings, const std::string& room);
-
-/// The same calls, with the time of each sync counted. `meters` is kept.
-LogCalls metered(LogCalls calls, std::shared_ptr<HostMeters> meters);
+/// The same disk, with the time of each sync counted.
+std::shared_ptr<Disk> metered(std::shared_ptr<Disk> disk, std::shared_ptr<HostMeters> meters);
 
 }  // namespace cycloid::server

@@ -5,6 +5,7 @@
 #include <sys/socket.h>
 
 #include <asio.hpp>
+#include <atomic>
 #include <chrono>
 #include <future>
 #include <mutex>
@@ -14,6 +15,7 @@
 #include <thread>
 
 #include "server/host/host.hpp"
+#include "tests/server/log_disks.hpp"
 #include "tests/server/room_fixture.hpp"
 
 namespace cycloid::server {
@@ -74,6 +76,17 @@ class HostPeer {
   asio::io_context io_{1};
   asio::ip::tcp::socket socket_{io_};
   protocol::Framer framer_{protocol::kServerMessageBytesMax};
+};
+
+/// A disk whose syncs do not return while it hangs.
+class HangingDisk final : public ScriptedDisk {
+ public:
+  explicit HangingDisk(const std::atomic<bool>& hangs) {
+    on_sync = [&hangs](int) {
+      while (hangs) std::this_thread::sleep_for(std::chrono::milliseconds(1));
+      return 0;
+    };
+  }
 };
 
 /// What a host has logged.

@@ -151,10 +151,7 @@ TEST_F(OperationTest, LivezFailsWhileATickIsStuckAndReadyzWhileDraining) {
       testing::TempDir() + "cycloid-livez-" + std::to_string(::getpid()) + ".log";
   std::filesystem::remove(log);
   std::atomic<bool> hangs{false};
-  options.log_calls.sync = [&](int) {
-    while (hangs) std::this_thread::sleep_for(1ms);
-    return 0;
-  };
+  options.disk = std::make_shared<HangingDisk>(hangs);
   options.rooms.push_back({"arena", two_seat_settings()});
   options.rooms[0].settings.log = log;
   options.rooms[0].settings.log_sync = LogSync::kEveryTick;

@@ -13,19 +13,19 @@ protocol::Bytes filled(std::size_t bytes, unsigned value) {
   return protocol::Bytes(bytes, static_cast<std::byte>(value));
 }
 
-class SimDisk : public testing::Test {
+class SimDiskTest : public testing::Test {
  protected:
-  Disk disk(const DiskFaults& faults) {
-    Disk one(faults, Random(1), chronicle_);
+  SimDisk disk(const DiskFaults& faults) {
+    SimDisk one(faults, Random(1), chronicle_);
     one.create(1, filled(4, 9));
     return one;
   }
   Chronicle chronicle_;
 };
 
-TEST_F(SimDisk, KeepsWhatWasSyncedThroughAPowerCut) {
+TEST_F(SimDiskTest, KeepsWhatWasSyncedThroughAPowerCut) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    Disk one({}, Random(seed), chronicle_);
+    SimDisk one({}, Random(seed), chronicle_);
     one.create(1, filled(4, 9));
     (void)one.write(1, filled(3000, 1));
     EXPECT_EQ(one.sync(1), DiskError::kNone);
@@ -37,10 +37,10 @@ TEST_F(SimDisk, KeepsWhatWasSyncedThroughAPowerCut) {
   }
 }
 
-TEST_F(SimDisk, LosesSectorsOutOfOrderAtAPowerCut) {
+TEST_F(SimDiskTest, LosesSectorsOutOfOrderAtAPowerCut) {
   int holes = 0;
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    Disk one({}, Random(seed), chronicle_);
+    SimDisk one({}, Random(seed), chronicle_);
     one.create(1, filled(4, 9));
     (void)one.write(1, filled(20'000, 2));
     one.restart(Death::kPower);
@@ -51,8 +51,8 @@ TEST_F(SimDisk, LosesSectorsOutOfOrderAtAPowerCut) {
   EXPECT_GT(holes, 10);
 }
 
-TEST_F(SimDisk, KeepsWhatWasWrittenThroughAKill) {
-  Disk one = disk({});
+TEST_F(SimDiskTest, KeepsWhatWasWrittenThroughAKill) {
+  SimDisk one = disk({});
   (void)one.write(1, filled(100, 1));
   one.kill();
   (void)one.write(1, filled(100, 2));
@@ -60,10 +60,10 @@ TEST_F(SimDisk, KeepsWhatWasWrittenThroughAKill) {
   EXPECT_EQ(one.content(1).size(), 104u);
 }
 
-TEST_F(SimDisk, KeepsNothingThatAFailedSyncHeld) {
+TEST_F(SimDiskTest, KeepsNothingThatAFailedSyncHeld) {
   DiskFaults faults;
   faults.sync_error_per_million = kMillion;
-  Disk one = disk(faults);
+  SimDisk one = disk(faults);
   (void)one.write(1, filled(100, 1));
   EXPECT_EQ(one.sync(1), DiskError::kInputOutput);
   one.calm();
@@ -71,21 +71,21 @@ TEST_F(SimDisk, KeepsNothingThatAFailedSyncHeld) {
   EXPECT_EQ(one.synced_bytes(1), 4u);
 }
 
-TEST_F(SimDisk, IsFullAtItsCapacity) {
+TEST_F(SimDiskTest, IsFullAtItsCapacity) {
   DiskFaults faults;
   faults.capacity_bytes = 50;
-  Disk one = disk(faults);
+  SimDisk one = disk(faults);
   EXPECT_EQ(one.write(1, filled(100, 1)).bytes, 50u);
   EXPECT_EQ(one.write(1, filled(1, 1)).error, DiskError::kNoSpace);
   one.enlarge();
   EXPECT_EQ(one.write(1, filled(1, 1)).error, DiskError::kNone);
 }
 
-TEST_F(SimDisk, WritesLessAndIsInterrupted) {
+TEST_F(SimDiskTest, WritesLessAndIsInterrupted) {
   DiskFaults faults;
   faults.short_write_per_million = kMillion;
   faults.interrupted_per_million = 300'000;
-  Disk one = disk(faults);
+  SimDisk one = disk(faults);
   std::size_t done = 0;
   while (done < 1000) done += one.write(1, filled(1000 - done, 1)).bytes;
   EXPECT_EQ(one.content(1).size(), 1004u);
@@ -118,7 +118,7 @@ class SimLogTest : public testing::Test {
 
   Chronicle chronicle_;
   std::optional<Ledger> ledger_;
-  std::optional<Disk> disk_;
+  std::optional<SimDisk> disk_;
   std::optional<SimLog> log_;
 };
 
