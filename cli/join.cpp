@@ -4,10 +4,12 @@
 #include <iostream>
 #include <memory>
 #include <random>
+#include <stdexcept>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/signals.hpp"
+#include "client/net/tls.hpp"
 #include "client/token_text.hpp"
 
 namespace cycloid::cli {
@@ -28,6 +30,8 @@ struct JoinCommand {
   std::uint32_t predict = 0;
   std::string profile = "exact";
   std::uint32_t reconnect_s = 0;
+  bool tls = false;
+  client::TlsTrust trust;
 };
 
 /// "HOST:PORT", "[::1]:PORT" or Failure.
@@ -139,6 +143,12 @@ void set_connection(const JoinCommand& command, client::JoinOptions& options) {
   options.reconnect.on = command.reconnect_s != 0;
   options.reconnect.deadline = std::chrono::seconds(command.reconnect_s);
   options.reconnect.seed = std::random_device{}();
+  if (!command.tls && command.trust.ca_file.empty() && command.trust.fingerprint.empty()) return;
+  try {
+    options.tls = std::make_shared<const client::ClientTls>(command.trust);
+  } catch (const std::runtime_error& error) {
+    throw Failure(kExitUsage, std::string("--tls: ") + error.what());
+  }
 }
 
 Exit join(const JoinCommand& command, bool json) {
@@ -207,6 +217,12 @@ void add_join(CLI::App& app, Action& action) {
       ->add_option("--reconnect", options->reconnect_s,
                    "Seconds to try to come back to the seat after a break; 0: not at all")
       ->capture_default_str();
+  command->add_flag("--tls", options->tls,
+                    "Encrypt; the system's authorities vouch for the server");
+  command->add_option("--tls-ca", options->trust.ca_file,
+                      "Encrypt; these authorities do, a PEM file");
+  command->add_option("--tls-fingerprint", options->trust.fingerprint,
+                      "Encrypt; the server has the certificate with this SHA-256, and no other");
   command->callback(
       [options, &action] { action.run = [=, &action] { return join(*options, action.json); }; });
 }

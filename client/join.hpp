@@ -16,6 +16,8 @@
 
 namespace cycloid::client {
 
+class ClientTls;
+
 struct JoinOptions {
   std::string host = "127.0.0.1";
   std::uint16_t port = 0;
@@ -30,7 +32,8 @@ struct JoinOptions {
   std::uint32_t predict_ticks = 0;  ///< Most ticks that a lockstep client predicts, up to 64.
   ReconnectOptions reconnect;
   std::shared_ptr<StateDecoder> decoder;  ///< Where empty: a DeltaDecoder.
-  std::shared_ptr<Witness> witness;       ///< Of confirmed states, such as for desync reports.
+  std::shared_ptr<Witness> witness;       ///< Where empty: an Evidence, for desync reports.
+  std::shared_ptr<const ClientTls> tls;   ///< Whom to trust; empty: plain TCP.
   std::uint64_t ticks = 0;                ///< Leave after so many ticks of the match; 0: stay.
   int workers = 1;
   InputSource input;  ///< Where empty: scenes::scripted_input of the scene.

@@ -2,8 +2,10 @@
 
 #include <utility>
 
+#include "client/replica/evidence.hpp"
 #include "client/replica/replica.hpp"
 #include "client/replica/thin.hpp"
+#include "protocol/build_text.hpp"
 
 namespace cycloid::client {
 namespace {
@@ -26,6 +28,8 @@ std::unique_ptr<Follower> make_follower(const JoinOptions& options, scenes::Simu
   follower.one_shot = one_shot_buttons(options.scene);
   follower.decoder = options.decoder;
   follower.witness = options.witness;
+  if (!follower.witness) follower.witness = std::make_shared<Evidence>();
+  follower.build = protocol::build_text();
   follower.on_frame = options.on_frame;
   follower.on_notice = options.on_notice;
   follower.input = options.input;
@@ -47,7 +51,7 @@ Visit::Attempt::Attempt(const JoinOptions& options, scenes::Simulation simulatio
     : options_(options),
       follower_(make_follower(options, std::move(simulation))),
       timer_(io_),
-      connection_(io_, {options.connect, options.silence}, handlers()) {
+      connection_(io_, {options.connect, options.silence}, handlers(), options.tls) {
   if (wait.count() == 0) {
     connection_.open(options_.host, options_.port);
     return;
