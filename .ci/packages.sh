@@ -9,6 +9,7 @@ packages=(
   libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
   prometheus-cpp-dev libcivetweb-dev        # metrics; their HTTP server
   libtomlplusplus-dev                       # configuration files
+  libssl-dev libsodium-dev                 # TLS; signed tokens
   libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
   librapidcheck-dev                         # tests of properties: random cases that shrink
   python3                                   # scripts that measure and that read objects

@@ -35,5 +35,6 @@ void add_version(CLI::App& app, Action& action);
 void add_serve(CLI::App& app, Action& action);
 void add_join(CLI::App& app, Action& action);
 void add_demo(CLI::App& app, Action& action);
+void add_token(CLI::App& app, Action& action);
 
 }  // namespace cycloid::cli

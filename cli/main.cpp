@@ -38,6 +38,7 @@ static Exit parse_and_run(int argc, char** argv) {
   add_serve(app, action);
   add_join(app, action);
   add_demo(app, action);
+  add_token(app, action);
 #endif
   add_run(app, action);
   add_replay(app, action);

@@ -24,6 +24,9 @@ class Stream {
   /// @param context  Through TLS as it says; null: TCP alone.
   explicit Stream(Socket socket, Context context = nullptr)
       : context_(std::move(context)), layer_(make_layer(std::move(socket), context_)) {}
+  /// Not connected yet; `socket` is what to connect.
+  explicit Stream(executor_type executor, Context context = nullptr)
+      : context_(std::move(context)), layer_(make_layer(std::move(executor), context_)) {}
 
   bool is_tls() const { return std::holds_alternative<Tls>(layer_); }
   /// Null over TCP alone.
@@ -80,9 +83,10 @@ class Stream {
  private:
   using Layer = std::variant<Socket, Tls>;
 
-  static Layer make_layer(Socket socket, const Context& context) {
-    if (context == nullptr) return Layer(std::in_place_type<Socket>, std::move(socket));
-    return Layer(std::in_place_type<Tls>, std::move(socket), *context);
+  template <class Source>
+  static Layer make_layer(Source source, const Context& context) {
+    if (context == nullptr) return Layer(std::in_place_type<Socket>, std::move(source));
+    return Layer(std::in_place_type<Tls>, std::move(source), *context);
   }
 
   Context context_;  ///< Outlives the layer that was made of it.

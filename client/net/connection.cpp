@@ -10,11 +10,13 @@ using asio::ip::tcp;
 // Plain callbacks: each operation names its next one. No handler keeps the connection alive; the
 // owner does, until the io_context has run dry.
 
-Connection::Connection(asio::io_context& io, Limits limits, Handlers handlers)
+Connection::Connection(asio::io_context& io, Limits limits, Handlers handlers,
+                       std::shared_ptr<const ClientTls> tls)
     : limits_(limits),
       handlers_(std::move(handlers)),
       resolver_(io),
-      socket_(io),
+      tls_(std::move(tls)),
+      stream_(io.get_executor(), tls_ == nullptr ? nullptr : tls_->context()),
       timer_(io),
       framer_(protocol::kServerMessageBytesMax) {}
 
@@ -24,29 +26,40 @@ void Connection::open(const std::string& host, std::uint16_t port) {
   asio::error_code error;
   const asio::ip::address address = asio::ip::make_address(host, error);
   if (!error) {  // A number needs no name service, which cannot be interrupted.
-    return connect(tcp::resolver::results_type::create(tcp::endpoint(address, port), host, ""));
+    const tcp::endpoint endpoint(address, port);
+    return connect(host, tcp::resolver::results_type::create(endpoint, host, ""));
   }
   resolver_.async_resolve(
       host, std::to_string(port),
-      [this](const asio::error_code& failure, const tcp::resolver::results_type& endpoints) {
+      [this, host](const asio::error_code& failure, const tcp::resolver::results_type& endpoints) {
         if (stage_ == Stage::kClosed) return;
         if (failure) return close("cannot look up: " + failure.message());
-        connect(endpoints);
+        connect(host, endpoints);
       });
 }
 
-void Connection::connect(const tcp::resolver::results_type& endpoints) {
-  asio::async_connect(socket_, endpoints,
-                      [this](const asio::error_code& failure, const tcp::endpoint&) {
+void Connection::connect(const std::string& host, const tcp::resolver::results_type& endpoints) {
+  asio::async_connect(stream_.socket(), endpoints,
+                      [this, host](const asio::error_code& failure, const tcp::endpoint&) {
                         if (stage_ == Stage::kClosed) return;
                         if (failure) return close("cannot connect: " + failure.message());
-                        opened();
+                        shake_hands(host);
                       });
+}
+
+void Connection::shake_hands(const std::string& host) {
+  if (tls_ == nullptr) return opened();
+  tls_->prepare(stream_, host);
+  stream_.async_handshake(asio::ssl::stream_base::client, [this](const asio::error_code& failure) {
+    if (stage_ == Stage::kClosed) return;
+    if (failure) return close(tls_->reason(stream_, failure));
+    opened();
+  });
 }
 
 void Connection::opened() {
   asio::error_code ignored;  // A socket without the option still works, only later.
-  socket_.set_option(tcp::no_delay(true), ignored);
+  stream_.socket().set_option(tcp::no_delay(true), ignored);
   stage_ = Stage::kOpen;
   since_ = Clock::now();
   read();
@@ -54,11 +67,11 @@ void Connection::opened() {
 }
 
 void Connection::read() {
-  socket_.async_read_some(asio::buffer(incoming_),
+  stream_.async_read_some(asio::buffer(incoming_),
                           [this](const asio::error_code& error, std::size_t bytes) {
                             if (stage_ == Stage::kClosed) return;
                             if (stage_ == Stage::kFinishing && error) return close(farewell_);
-                            if (error == asio::error::eof) return close("the server hung up");
+                            if (transport::is_end(error)) return close("the server hung up");
                             if (error) return close("cannot read: " + error.message());
                             take(bytes);
                             if (stage_ != Stage::kClosed) read();
@@ -98,7 +111,7 @@ void Connection::send(const protocol::ClientMessage& message) {
 void Connection::write() {
   if (writing_ || queue_.empty()) return;
   writing_ = true;
-  asio::async_write(socket_, asio::buffer(queue_.front()),
+  asio::async_write(stream_, asio::buffer(queue_.front()),
                     [this](const asio::error_code& error, std::size_t bytes) {
                       writing_ = false;
                       bytes_out_ += bytes;
@@ -125,17 +138,15 @@ void Connection::finish(const std::string& reason) {
 void Connection::shut_when_sent() {
   if (stage_ != Stage::kFinishing || shut_ || writing_ || !queue_.empty()) return;
   shut_ = true;
-  asio::error_code ignored;  // It fails where the server was faster.
-  socket_.shutdown(tcp::socket::shutdown_send, ignored);
+  stream_.async_shutdown([](const asio::error_code&) {});  // It fails where the server was faster.
 }
 
 void Connection::close(const std::string& reason) {
   if (stage_ == Stage::kClosed) return;
   stage_ = Stage::kClosed;
-  asio::error_code ignored;  // Closed is closed.
   resolver_.cancel();
   timer_.cancel();
-  socket_.close(ignored);
+  stream_.close();
   handlers_.on_closed(reason);
 }
 

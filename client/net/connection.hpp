@@ -7,14 +7,18 @@
 #include <cstdint>
 #include <deque>
 #include <functional>
+#include <memory>
 #include <string>
 
+#include "client/net/tls.hpp"
 #include "protocol/codec.hpp"
 #include "protocol/messages.hpp"
+#include "transport/stream.hpp"
 
 namespace cycloid::client {
 
-/// One TCP connection to a server: messages in and out, knows nothing of physics.
+/// One connection to a server, over TCP or through TLS: messages in and out, knows nothing of
+/// physics.
 ///
 /// Every wait has a deadline and every queue a bound; whichever is reached closes the connection,
 /// and the reason names it. Ends with exactly one `on_closed`. All calls and handlers are on the
@@ -22,7 +26,7 @@ namespace cycloid::client {
 class Connection {
  public:
   struct Limits {
-    std::chrono::milliseconds connect{5000};
+    std::chrono::milliseconds connect{5000};   ///< TLS's handshake included.
     std::chrono::milliseconds silence{10000};  ///< Longest time without a byte from the server.
     std::chrono::milliseconds farewell{1000};  ///< From our last byte to the server's end.
     std::size_t queue_bytes_max = std::size_t{1} << 20;
@@ -35,7 +39,9 @@ class Connection {
   };
   static constexpr std::chrono::milliseconds kPollInterval{50};
 
-  Connection(asio::io_context& io, Limits limits, Handlers handlers);
+  /// @param tls  How to speak TLS; null: not at all.
+  Connection(asio::io_context& io, Limits limits, Handlers handlers,
+             std::shared_ptr<const ClientTls> tls = nullptr);
 
   /// @param host  An address, or a name to look up.
   void open(const std::string& host, std::uint16_t port);
@@ -52,7 +58,8 @@ class Connection {
   using Clock = std::chrono::steady_clock;
   enum class Stage : std::uint8_t { kConnecting, kOpen, kFinishing, kClosed };
 
-  void connect(const asio::ip::tcp::resolver::results_type& endpoints);
+  void connect(const std::string& host, const asio::ip::tcp::resolver::results_type& endpoints);
+  void shake_hands(const std::string& host);
   void opened();
   void read();
   void take(std::size_t bytes);
@@ -64,7 +71,8 @@ class Connection {
   Limits limits_;
   Handlers handlers_;
   asio::ip::tcp::resolver resolver_;
-  asio::ip::tcp::socket socket_;
+  std::shared_ptr<const ClientTls> tls_;
+  transport::Stream stream_;
   asio::steady_timer timer_;
   protocol::Framer framer_;
   std::array<std::byte, 16384> incoming_{};

@@ -111,9 +111,14 @@ std::vector<std::byte> sign_token(const AdmissionToken& token, const SigningKey&
   body.insert(body.end(), token.nonce.begin(), token.nonce.end());
   append_text(token.room, body);
   append_text(token.identity, body);
-  const Signature signature = key.sign(signed_bytes(body));
-  body.insert(body.begin(), signature.begin(), signature.end());
-  return body;
+  return sign_token_bytes(body, key);
+}
+
+std::vector<std::byte> sign_token_bytes(std::span<const std::byte> bytes, const SigningKey& key) {
+  const Signature signature = key.sign(signed_bytes(bytes));
+  std::vector<std::byte> token(signature.begin(), signature.end());
+  token.insert(token.end(), bytes.begin(), bytes.end());
+  return token;
 }
 
 std::string token_text(std::span<const std::byte> token) {

@@ -43,6 +43,9 @@ std::string mistake_of(const AdmissionToken& token);
 /// @pre mistake_of(token) is ""
 std::vector<std::byte> sign_token(const AdmissionToken& token, const SigningKey& key);
 
+/// A signature for a token in front of these bytes, whatever they are: how tests get behind it.
+std::vector<std::byte> sign_token_bytes(std::span<const std::byte> bytes, const SigningKey& key);
+
 /// base64url without padding, for command lines and JSON; and back, nothing where it is none.
 std::string token_text(std::span<const std::byte> token);
 std::optional<std::vector<std::byte>> parse_token_text(std::string_view text);

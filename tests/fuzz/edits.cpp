@@ -77,6 +77,10 @@ const std::vector<FuzzTarget>& targets() {
       {"scene-json", run_scene_json, scene_json_seeds},
       {"scene-binary", run_scene_binary, scene_binary_seeds},
       {"messages", run_messages, message_seeds},
+#ifdef CYCLOID_ADMISSION
+      {"token", run_token, token_seeds},
+      {"gate", run_gate, gate_seeds},
+#endif
   };
   return kTargets;
 }

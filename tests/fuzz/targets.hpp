@@ -36,6 +36,10 @@ void run_scene_binary(Input input);
 std::vector<Seed> scene_binary_seeds();
 void run_messages(Input input);
 std::vector<Seed> message_seeds();
+void run_token(Input input);
+std::vector<Seed> token_seeds();
+void run_gate(Input input);
+std::vector<Seed> gate_seeds();
 
 /// Ends the process with a sentence: the way in which a fuzzer learns of a failure.
 [[noreturn]] void fail(const std::string& why);

@@ -1,0 +1,122 @@
+// Loads a server over real sockets on loopback and prints a table; see docs/server.md.
+#include <sys/resource.h>
+
+#include <CLI/CLI.hpp>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <nlohmann/json.hpp>
+
+#include "bench/load/scenario.hpp"
+
+namespace cycloid::load {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+Json to_json(ScenarioResult& result) {
+  Json groups = Json::array();
+  for (GroupResult& group : result.groups) {
+    ClientTally& tally = group.tally;
+    const double updates = static_cast<double>(tally.frames + tally.snapshots);
+    groups.push_back({{"name", group.name},
+                      {"clients", group.clients},
+                      {"joined", tally.joined},
+                      {"refused", tally.refused},
+                      {"closed", tally.closed},
+                      {"last_refusal", tally.last_refusal},
+                      {"frames", tally.frames},
+                      {"snapshots", tally.snapshots},
+                      {"gaps", tally.gaps},
+                      {"inputs_replaced", tally.replaced},
+                      {"bytes_per_update",
+                       updates > 0.0 ? static_cast<double>(tally.update_bytes) / updates : 0.0},
+                      {"update_gap_p99_ms", tally.frame_gap_ms.quantile(990)},
+                      {"input_to_state_p50_ms", tally.input_to_state_ms.quantile(500)},
+                      {"input_to_state_p99_ms", tally.input_to_state_ms.quantile(990)},
+                      {"input_to_state_p999_ms", tally.input_to_state_ms.quantile(999)},
+                      {"join_p99_ms", tally.join_ms.quantile(990)}});
+  }
+  return {{"scenario", result.name},
+          {"seconds", result.seconds},
+          {"cpu_percent", result.cpu_percent},
+          {"resident_mb", result.resident_mb},
+          {"ticks", result.ticks},
+          {"catch_up_ticks", result.catch_up_ticks},
+          {"slowed_ms", result.slowed_ms},
+          {"tick_p99_ms", result.tick_p99_ms},
+          {"late_ms", {result.late_p50_ms, result.late_p99_ms, result.late_p999_ms}},
+          {"control_ms", {result.control_p50_ms, result.control_p99_ms, result.control_p999_ms}},
+          {"groups", std::move(groups)}};
+}
+
+void print(const Json& result) {
+  const auto number = [](const Json& value) { return value.get<double>(); };
+  std::printf("%-11s %4.0f s  cpu %3.0f %%  %5.0f MB  ticks %.0f, behind %.0f, slowed %.0f ms\n",
+              result["scenario"].get<std::string>().c_str(), number(result["seconds"]),
+              number(result["cpu_percent"]), number(result["resident_mb"]), number(result["ticks"]),
+              number(result["catch_up_ticks"]), number(result["slowed_ms"]));
+  const Json& late = result["late_ms"];
+  const Json& control = result["control_ms"];
+  std::printf("  late p50/p99/p99.9 <= %.2f/%.2f/%.2f ms, bare timer %.2f/%.2f/%.2f ms\n",
+              number(late[0]), number(late[1]), number(late[2]), number(control[0]),
+              number(control[1]), number(control[2]));
+  for (const Json& group : result["groups"]) {
+    std::printf(
+        "  %-10s %5.0f of %5.0f joined, %4.0f closed; %.0f B an update, gap p99 %.1f ms; "
+        "input to state %.1f/%.1f/%.1f ms; replaced %.0f; join p99 %.0f ms\n",
+        group["name"].get<std::string>().c_str(), number(group["joined"]), number(group["clients"]),
+        number(group["closed"]), number(group["bytes_per_update"]),
+        number(group["update_gap_p99_ms"]), number(group["input_to_state_p50_ms"]),
+        number(group["input_to_state_p99_ms"]), number(group["input_to_state_p999_ms"]),
+        number(group["inputs_replaced"]), number(group["join_p99_ms"]));
+  }
+  std::fflush(stdout);
+}
+
+/// Two descriptors per connection of the largest scenario, on both sides; the server inherits it.
+void raise_descriptors() {
+  rlimit limit{};
+  if (::getrlimit(RLIMIT_NOFILE, &limit) != 0) return;
+  limit.rlim_cur = limit.rlim_max;
+  (void)::setrlimit(RLIMIT_NOFILE, &limit);
+}
+
+int run(int argc, char** argv) {
+  CLI::App app("Loads a server over real sockets on loopback; prints a table.");
+  std::string program;
+  std::vector<std::string> wanted;
+  double seconds = 20.0;
+  std::string json_file;
+  app.add_option("--program", program, "The cycloid to load")->required()->check(CLI::ExistingFile);
+  app.add_option("--seconds", seconds, "Of each scenario")->check(CLI::PositiveNumber);
+  app.add_option("--json", json_file, "Write the results here, too");
+  app.add_option("SCENARIO", wanted, "Only these");
+  CLI11_PARSE(app, argc, argv);
+  raise_descriptors();
+  Json all = Json::array();
+  for (const Scenario& scenario : scenarios()) {
+    if (!wanted.empty() && std::find(wanted.begin(), wanted.end(), scenario.name) == wanted.end()) {
+      continue;
+    }
+    ScenarioResult result = run_scenario(scenario, program, seconds);
+    all.push_back(to_json(result));
+    print(all.back());
+  }
+  if (!json_file.empty()) std::ofstream(json_file) << all.dump(2) << '\n';
+  if (!all.empty()) return 0;
+  std::cerr << "no such scenario\n";
+  return 2;
+}
+
+}  // namespace
+}  // namespace cycloid::load
+
+int main(int argc, char** argv) {
+  try {
+    return cycloid::load::run(argc, argv);
+  } catch (const std::exception& error) {
+    std::cerr << "cycloid_load: " << error.what() << '\n';
+    return 1;
+  }
+}

@@ -1,0 +1,32 @@
+#pragma once
+
+#include <algorithm>
+#include <cstddef>
+#include <vector>
+
+namespace cycloid::load {
+
+/// Measured times, kept whole, so that a quantile is one of them and not the edge of a bucket.
+class Samples {
+ public:
+  void add(double value) {
+    values_.push_back(value);
+    sorted_ = false;
+  }
+  std::size_t count() const { return values_.size(); }
+  /// The smallest value that at least `permille` / 1000 of all are not above; 0 of none.
+  double quantile(std::size_t permille) {
+    if (values_.empty()) return 0.0;
+    if (!sorted_) std::sort(values_.begin(), values_.end());  // Total order: numbers of a clock.
+    sorted_ = true;
+    const std::size_t at = (values_.size() * permille + 999) / 1000;
+    return values_[std::min(values_.size(), std::max<std::size_t>(at, 1)) - 1];
+  }
+  void clear() { values_.clear(); }
+
+ private:
+  std::vector<double> values_;
+  bool sorted_ = false;
+};
+
+}  // namespace cycloid::load

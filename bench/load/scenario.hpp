@@ -1,0 +1,63 @@
+#pragma once
+
+#include <cstdint>
+#include <string>
+#include <vector>
+
+#include "bench/load/load_client.hpp"
+
+namespace cycloid::load {
+
+/// So many clients of one kind.
+struct ClientGroup {
+  std::string name;  ///< "players"
+  int per_room = 0;
+  protocol::Mode mode = protocol::Mode::kLockstep;
+  protocol::Profile profile = protocol::Profile::kExact;
+  Behaviour behaviour = Behaviour::kPlays;
+  double after_s = 0.0;  ///< Connects so long after the others.
+};
+
+/// A load on one server process.
+struct Scenario {
+  std::string name;
+  std::string what;   ///< A sentence.
+  std::string scene;  ///< A catalogue name or "seats:N": a room with so many seats.
+  int rooms = 1;
+  int threads = 2;
+  std::uint32_t snapshot_ticks = 1;
+  std::vector<ClientGroup> groups;
+};
+
+/// All of them, in the order of the table.
+std::vector<Scenario> scenarios();
+
+struct GroupResult {
+  std::string name;
+  int clients = 0;
+  ClientTally tally;
+};
+
+struct ScenarioResult {
+  std::string name;
+  double seconds = 0.0;         ///< Measured, the warm-up not counted.
+  double cpu_percent = 0.0;     ///< Of one core, of the server.
+  double resident_mb = 0.0;     ///< Of the server, at the end.
+  double ticks = 0.0;           ///< Of all rooms.
+  double catch_up_ticks = 0.0;  ///< Ticks that began after another's time: overruns.
+  double slowed_ms = 0.0;       ///< By overload, of all rooms.
+  double tick_p99_ms = 0.0;
+  double late_p50_ms = 0.0;
+  double late_p99_ms = 0.0;
+  double late_p999_ms = 0.0;
+  double control_p50_ms = 0.0;  ///< A bare timer of the same rate in the same seconds.
+  double control_p99_ms = 0.0;
+  double control_p999_ms = 0.0;
+  std::vector<GroupResult> groups;
+};
+
+/// Starts the server, connects the clients, waits for the warm-up, measures, ends the server.
+/// @param program  `cycloid`.
+ScenarioResult run_scenario(const Scenario& scenario, const std::string& program, double seconds);
+
+}  // namespace cycloid::load
