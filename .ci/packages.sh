@@ -7,7 +7,7 @@ packages=(
   nlohmann-json3-dev libflatbuffers-dev     # scenes and protocol: JSON; binary forms
   flatbuffers-compiler
   libasio-dev libspdlog-dev libcli11-dev    # server and program: sockets; log lines; arguments
-  libssl-dev libsodium-dev                 # TLS; signed tokens
+  libssl-dev libsodium-dev                  # TLS; signed tokens
   prometheus-cpp-dev libcivetweb-dev        # metrics; their HTTP server
   libtomlplusplus-dev                       # configuration files
   libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks

@@ -44,6 +44,7 @@ ServeReport serve(const ServeOptions& options,
   HostReport all = host.run(std::move(stop));
   ServeReport report = all.rooms[kOnlyRoom];
   report.refusals += all.refusals;
+  report.bytes_in += all.gate_bytes;
   return report;
 }
 

@@ -75,8 +75,8 @@ void check_tokens(ServerConfig& config, const Complain& complain) {
     }
   }
   if (!stream.eof()) complain(key, file + ": cannot be read");
-  if (stream.eof() && config.host.gate.keys.empty())
-    complain(key, file + ": there is no key in it");
+  const bool none = stream.eof() && !mistaken && config.host.gate.keys.empty();
+  if (none) complain(key, file + ": there is no key in it");
 }
 
 void check_tls(ServerConfig& config, const Complain& complain) {

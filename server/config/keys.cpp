@@ -1,7 +1,7 @@
-#include "server/config/keys.hpp"
-
 #include <chrono>
 #include <cmath>
+
+#include "server/config/key_makers.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -10,22 +10,9 @@ using Kind = ConfigKind;
 using Value = ConfigValue;
 using Key = ConfigKey<ServerConfig>;
 
-constexpr double kManySeconds = 86400.0;
-constexpr double kMany = 1'000'000'000.0;
-
-template <class Number>
-Number as(const Value& value) {
-  return static_cast<Number>(value.integer);
-}
-
-std::chrono::milliseconds milliseconds(const Value& value) {
-  return std::chrono::milliseconds(value.integer);
-}
-
-Key integer(const char* name, double least, double most, const char* otherwise, bool reloads,
-            void (*put)(ServerConfig&, const Value&)) {
-  return {name, Kind::kInteger, least, most, otherwise, {}, reloads, put};
-}
+using config_keys_of::as;
+using config_keys_of::integer;
+using config_keys_of::kManySeconds;
 
 Key text(const char* name, const char* otherwise, bool reloads,
          void (*put)(ServerConfig&, const Value&)) {
@@ -67,8 +54,9 @@ ConfigSection sockets_section() {
                    [](C& c, const Value& v) {
                      c.host.sockets.keep_alive = std::chrono::seconds(v.integer);
                    }),
-           integer("user_timeout_ms", 1000, 3600000, "20000", false,
-                   [](C& c, const Value& v) { c.host.sockets.user_timeout = milliseconds(v); })}};
+           integer("user_timeout_ms", 1000, 3600000, "20000", false, [](C& c, const Value& v) {
+             c.host.sockets.user_timeout = std::chrono::milliseconds(v.integer);
+           })}};
 }
 
 ConfigSection operation_section() {
@@ -91,54 +79,6 @@ ConfigSection admin_section() {
            flag("remote", "false", [](C& c, const Value& v) { c.admin_remote = v.flag; }),
            text("snapshot_directory", "", false,
                 [](C& c, const Value& v) { c.snapshot_directory = v.text; })}};
-}
-
-ConfigSection limits_section() {
-  using C = ServerConfig;
-  return {
-      "limits",
-      {integer("connections", 1, 1000000, "16384", false,
-               [](C& c, const Value& v) { c.host.gate.connections_max = as<std::size_t>(v); }),
-       integer("pending", 1, 1000000, "12000", false,
-               [](C& c, const Value& v) { c.host.gate.pending_max = as<std::size_t>(v); }),
-       integer("hello_ms", 1, 600000, "5000", false,
-               [](C& c, const Value& v) { c.host.gate.hello_deadline_ns = v.integer * 1'000'000; }),
-       integer("address_connections", 1, 1000000, "64", false,
-               [](C& c, const Value& v) {
-                 c.host.gate.addresses.host_connections_max = as<std::uint32_t>(v);
-               }),
-       integer("address_pending", 1, 1000000, "16", false,
-               [](C& c, const Value& v) {
-                 c.host.gate.addresses.host_pending_max = as<std::uint32_t>(v);
-               }),
-       integer("rooms", 1, 100000, "256", true,
-               [](C& c, const Value& v) { c.host.limits.rooms_max = as<std::size_t>(v); }),
-       integer(
-           "room_connections", 1, 1000000, "1024", true,
-           [](C& c, const Value& v) { c.host.limits.room.connections_max = as<std::size_t>(v); }),
-       integer("messages_per_tick", 1, kMany, "64", true,
-               [](C& c, const Value& v) {
-                 c.host.limits.room.messages_per_tick_max = as<std::uint32_t>(v);
-               }),
-       integer(
-           "queue_bytes", 4096, kMany, "1048576", true,
-           [](C& c, const Value& v) { c.host.limits.room.queue_bytes_max = as<std::size_t>(v); }),
-       integer(
-           "idle_s", 1, kManySeconds, "30", true,
-           [](C& c, const Value& v) { c.host.limits.room.idle = std::chrono::seconds(v.integer); }),
-       integer("catch_up_ticks", 1, 10000, "8", true,
-               [](C& c, const Value& v) {
-                 c.host.limits.room.catch_up_ticks_max = as<std::uint32_t>(v);
-               }),
-       integer(
-           "digest_ticks", 1, 1000000, "60", false,
-           [](C& c, const Value& v) { c.host.limits.room.digest_ticks = as<std::uint64_t>(v); }),
-       integer(
-           "snapshot_ticks", 1, 1000000, "3", false,
-           [](C& c, const Value& v) { c.host.limits.room.snapshot_ticks = as<std::uint64_t>(v); }),
-       integer("input_delay_ticks", 1, 60, "2", false, [](C& c, const Value& v) {
-         c.host.limits.room.input_delay_ticks = as<std::uint32_t>(v);
-       })}};
 }
 
 ConfigSection admission_section() {
@@ -178,11 +118,23 @@ ConfigSection tls_section() {
                 [](C& c, const Value& v) { c.tls_files.private_key = v.text; })}};
 }
 
+SlowPeer slow_peer_of(const std::string& word) {
+  if (word == "wait") return SlowPeer::kWait;
+  if (word == "spectate") return SlowPeer::kSpectate;
+  return word == "drop" ? SlowPeer::kDrop : SlowPeer::kReplace;
+}
+
+WhenMissing when_missing_of(const std::string& word) {
+  if (word == "neutral") return WhenMissing::kNeutral;
+  if (word == "wait-repeat") return WhenMissing::kWaitThenRepeat;
+  return word == "wait-neutral" ? WhenMissing::kWaitThenNeutral : WhenMissing::kRepeat;
+}
+
 }  // namespace
 
 const std::vector<ConfigSection>& config_sections() {
   static const std::vector<ConfigSection> kSections = {
-      server_section(), sockets_section(),   limits_section(), admission_section(),
+      server_section(), sockets_section(),   config_limits(), admission_section(),
       tls_section(),    operation_section(), admin_section()};
   return kSections;
 }
@@ -241,6 +193,57 @@ const std::vector<ConfigKey<RoomTemplate>>& config_template_keys() {
        {},
        false,
        [](T& t, const Value& v) { t.settings.workers = as<int>(v); }},
+      {"slow_peer",
+       Kind::kText,
+       0,
+       0,
+       "replace",
+       {"wait", "replace", "spectate", "drop"},
+       false,
+       [](T& t, const Value& v) { t.settings.slow = slow_peer_of(v.text); }},
+      {"when_missing",
+       Kind::kText,
+       0,
+       0,
+       "repeat",
+       {"repeat", "neutral", "wait-repeat", "wait-neutral"},
+       false,
+       [](T& t, const Value& v) {
+         t.settings.policy.axes.fill(when_missing_of(v.text));
+         t.settings.policy.buttons.fill(when_missing_of(v.text));
+       }},
+      {"wait_ticks",
+       Kind::kInteger,
+       0,
+       1000,
+       "3",
+       {},
+       false,
+       [](T& t, const Value& v) { t.settings.policy.wait_ticks_max = as<std::uint32_t>(v); }},
+      {"one_shot_buttons",
+       Kind::kInteger,
+       0,
+       65535,
+       "0",
+       {},
+       false,
+       [](T& t, const Value& v) { t.settings.policy.one_shot_buttons = as<std::uint16_t>(v); }},
+      {"adaptive_delay",
+       Kind::kFlag,
+       0,
+       0,
+       "false",
+       {},
+       false,
+       [](T& t, const Value& v) { t.settings.delay.adaptive = v.flag; }},
+      {"spectator_delay_ticks",
+       Kind::kInteger,
+       0,
+       1000000,
+       "0",
+       {},
+       false,
+       [](T& t, const Value& v) { t.settings.spectator_delay_ticks = as<std::uint64_t>(v); }},
       {"log_directory",
        Kind::kText,
        0,

@@ -146,6 +146,7 @@ void Gatehouse::on_readable(GateId id, const CallerPtr& caller) {
 }
 
 bool Gatehouse::hear(GateId id, const CallerPtr& caller, std::span<const std::byte> bytes) {
+  meters_->gate_bytes.add(bytes.size());
   GateResult result = gate_.feed(id, bytes, gate_time());
   if (std::holds_alternative<GateWaiting>(result)) return true;
   lose(id);

@@ -102,6 +102,7 @@ HostReport Host::run(std::stop_token stop) {
   if (thrown_) std::rethrow_exception(thrown_);
   const std::lock_guard lock(directory_mutex_);
   for (const Meter& refusals : meters_->refusals) report_.refusals += refusals.get();
+  report_.gate_bytes = meters_->gate_bytes.get();
   return report_;
 }
 

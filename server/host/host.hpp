@@ -53,8 +53,9 @@ struct HostOptions {
 struct HostReport {
   std::map<std::string, ServeReport> rooms;  ///< The last so many that have ended, by name.
   std::uint64_t rooms_ended = 0;
-  std::uint64_t refusals = 0;  ///< At the gate.
-  bool good = true;            ///< All rooms ended by a drain or after their ticks, and durable.
+  std::uint64_t refusals = 0;    ///< At the gate.
+  std::uint64_t gate_bytes = 0;  ///< Heard there: hellos.
+  bool good = true;              ///< All rooms ended by a drain or after their ticks, and durable.
 };
 
 /// Many rooms on a fixed pool of threads.

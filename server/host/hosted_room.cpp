@@ -98,6 +98,10 @@ void HostedRoom::open_room() {
   options.ticks = settings_.ticks;
   options.stop_on_log_error = settings_.stop_on_log_error;
   options.name = name_;
+  options.policy = settings_.policy;
+  options.slow = settings_.slow;
+  options.delay = settings_.delay;
+  options.spectator_delay_ticks = settings_.spectator_delay_ticks;
   settings_.scene = {};  // The simulation has it; a landscape is large.
   RoomHooks hooks;
   hooks.now_ns = [this] { return clock_.room_ns(process_now_ns()); };

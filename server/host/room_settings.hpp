@@ -24,6 +24,10 @@ struct RoomSettings {
   bool stop_on_log_error = false;  ///< Else the match goes on, and says that it is not durable.
   std::chrono::milliseconds empty_ttl{0};  ///< Without clients for so long it ends; 0: never.
   Limits limits;
+  InputPolicy policy;
+  SlowPeer slow = SlowPeer::kReplace;
+  DelayPolicy delay;
+  std::uint64_t spectator_delay_ticks = 0;
 };
 
 /// What rooms may be made of on demand.

@@ -80,6 +80,7 @@ struct HostMeters {
   Meter accepted;
   Meter accept_failures;
   RefusalMeters refusals;  ///< At the gate.
+  Meter gate_bytes;        ///< Heard before an admission or a refusal.
   Meter rooms_made;
   Meter rooms_ended;
   DurationMeter log_sync;

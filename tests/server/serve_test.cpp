@@ -60,6 +60,7 @@ class Served {
 ServeOptions quiet_options() {
   ServeOptions options;
   options.catch_signals = false;
+  options.limits.resume = 0ns;  // A seat that is lost is free at once.
   return options;
 }
 
