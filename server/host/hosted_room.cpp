@@ -5,6 +5,7 @@
 #include <stdexcept>
 #include <utility>
 
+#include "protocol/build_text.hpp"
 #include "protocol/log_format.hpp"
 #include "scenes/catalogue.hpp"
 #include "server/admission/random.hpp"
@@ -102,8 +103,14 @@ void HostedRoom::open_room() {
   options.slow = settings_.slow;
   options.delay = settings_.delay;
   options.spectator_delay_ticks = settings_.spectator_delay_ticks;
-  settings_.scene = {};  // The simulation has it; a landscape is large.
+  options.build = protocol::build_text();
+  const auto identity = std::make_shared<const RoomIdentity>(
+      RoomIdentity{name_, std::make_shared<const scenes::Scene>(std::move(settings_.scene)),
+                   options.scene_digest, options.build, rate_millihertz_});
+  inquiry_ =
+      std::make_unique<RoomInquiry>(DesyncDeskOptions{}, identity, *simulation_, inquiry_hooks());
   RoomHooks hooks;
+  hooks.inquiry = inquiry_.get();
   hooks.now_ns = [this] { return clock_.room_ns(process_now_ns()); };
   hooks.notice = [this](const Notice& said) { take_notice(said); };
   hooks.log = log_.get();
@@ -111,6 +118,31 @@ void HostedRoom::open_room() {
   room_.emplace(options, std::move(*simulation_), std::move(hooks));
   simulation_.reset();
   empty_since_ns_ = now_ns;
+}
+
+/// Looking into a desync takes as long as making its ticks again: away from the strand.
+RoomInquiryHooks HostedRoom::inquiry_hooks() {
+  RoomInquiryHooks hooks;
+  hooks.now_ns = process_now_ns;
+  hooks.later = [this](std::function<void()> work, std::function<void()> done) {
+    auto task = [self = shared_from_this(), work = std::move(work), done = std::move(done)] {
+      work();
+      asio::post(self->strand_, [self, done] { done(); });
+    };
+    asio::post(site_.slow, std::move(task));
+  };
+  hooks.publish = [logger = site_.logger, reports = site_.reports](const Finding& finding) {
+    DesyncReport report;
+    ReportSink::Written written;
+    if (reports != nullptr) written = reports->publish(finding, &report);
+    if (reports == nullptr) report = investigate(finding);
+    const std::string line = report_line(report);
+    logger->warn("desync: {}{}", line,
+                 written.report.empty() ? written.error : "; report " + written.report);
+    if (report.server_suspect) logger->error("desync: the server itself is suspect: {}", line);
+    return line;
+  };
+  return hooks;
 }
 
 void HostedRoom::take_notice(const Notice& notice) {

@@ -11,6 +11,8 @@
 #include <string>
 #include <vector>
 
+#include "server/desync/report_sink.hpp"
+#include "server/desync/room_inquiry.hpp"
 #include "server/host/act_result.hpp"
 #include "server/host/life_cycle.hpp"
 #include "server/host/room_clock.hpp"
@@ -28,8 +30,9 @@ struct RoomSite {
   asio::thread_pool& slow;  ///< For what waits for a disk.
   std::shared_ptr<HostMeters> meters;
   std::shared_ptr<spdlog::logger> logger;
-  std::shared_ptr<Disk> disk;  ///< Of the logs.
-  std::int64_t epoch_ns = 0;   ///< Where the rasters of all rooms begin.
+  std::shared_ptr<Disk> disk;           ///< Of the logs.
+  std::shared_ptr<ReportSink> reports;  ///< Of desyncs; none: they are a line each.
+  std::int64_t epoch_ns = 0;            ///< Where the rasters of all rooms begin.
   /// A connection that cannot come in, and why. Any thread.
   std::function<void(Entrant, const protocol::Refused&)> turn_away;
   /// The room is over and nothing of it runs any more. Any thread.
@@ -81,6 +84,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
 
  private:
   void open_room();
+  RoomInquiryHooks inquiry_hooks();
   void on_tick();
   void arm();
   void arm_at(std::int64_t process_ns);
@@ -109,6 +113,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   std::unique_ptr<RoomLog> log_;
   RoomClock clock_{0};
   LifeCycle life_;
+  std::unique_ptr<RoomInquiry> inquiry_;  ///< Before the room, which calls it.
   std::optional<Room> room_;
   std::vector<std::weak_ptr<Session>> sessions_;
   std::array<std::byte, kSessionReadBytes> scratch_;
