@@ -61,15 +61,17 @@ ConfigSection sockets_section() {
 
 ConfigSection operation_section() {
   using C = ServerConfig;
-  return {"operation",
-          {flag("enabled", "true", [](C& c, const Value& v) { c.operation_on = v.flag; }),
-           text("address", "127.0.0.1", false,
-                [](C& c, const Value& v) { c.operation.address = v.text; }),
-           integer("port", 0, 65535, "7778", false,
-                   [](C& c, const Value& v) { c.operation.port = as<std::uint16_t>(v); }),
-           integer("missed_ticks", 1, 100000, "60", false, [](C& c, const Value& v) {
-             c.operation.missed_ticks_max = as<std::uint32_t>(v);
-           })}};
+  return {
+      "operation",
+      {flag("enabled", "true", [](C& c, const Value& v) { c.operation_on = v.flag; }),
+       text("address", "127.0.0.1", false,
+            [](C& c, const Value& v) { c.operation.address = v.text; }),
+       integer("port", 0, 65535, "7778", false,
+               [](C& c, const Value& v) { c.operation.port = as<std::uint16_t>(v); }),
+       integer("missed_ticks", 1, 100000, "60", false,
+               [](C& c, const Value& v) { c.operation.missed_ticks_max = as<std::uint32_t>(v); }),
+       text("desync_directory", "", false,
+            [](C& c, const Value& v) { c.host.desync_directory = v.text; })}};
 }
 
 ConfigSection admin_section() {

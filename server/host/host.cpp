@@ -52,6 +52,12 @@ Host::Host(HostOptions options)
   gatehouse.on_admitted = [this](Entrant entrant) { on_admitted(std::move(entrant)); };
   gatehouse_.emplace(accept_strand_, meters_, std::move(gatehouse));
   options_.disk = metered(std::move(options_.disk), meters_);
+  if (!options_.desync_directory.empty()) {
+    ReportSinkOptions reports;
+    reports.folder = options_.desync_directory;
+    reports.now_ns = process_now_ns;
+    reports_ = std::make_shared<ReportSink>(std::move(reports));
+  }
   start_rooms();
 }
 
@@ -68,8 +74,8 @@ RoomSite Host::site() {
   const auto gone_handler = [this](const std::string& name, const ServeReport& report) {
     gone(name, report);
   };
-  return RoomSite{io_,           slow_,     meters_,   options_.logger,
-                  options_.disk, epoch_ns_, turn_away, gone_handler};
+  return RoomSite{io_,      slow_,     meters_,   options_.logger, options_.disk,
+                  reports_, epoch_ns_, turn_away, gone_handler};
 }
 
 void Host::start_rooms() {

@@ -46,6 +46,7 @@ struct HostOptions {
   std::vector<NamedRoom> rooms;                   ///< Made before the first connection.
   std::map<std::string, RoomTemplate> templates;  ///< What others are made of.
   std::shared_ptr<Disk> disk = system_disk();     ///< Of the logs.
+  std::string desync_directory;                   ///< For reports of desyncs; none: a line each.
   std::shared_ptr<spdlog::logger> logger;         ///< None: lines on stderr.
   std::function<void()> on_reload;                ///< SIGHUP; on the accept strand.
 };
@@ -120,6 +121,7 @@ class Host {
   std::shared_ptr<HostMeters> meters_ = std::make_shared<HostMeters>();
   asio::io_context io_;
   asio::thread_pool slow_{2};
+  std::shared_ptr<ReportSink> reports_;
   Gatehouse::Strand accept_strand_;
   asio::signal_set signals_;
   std::optional<Gatehouse> gatehouse_;
