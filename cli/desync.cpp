@@ -7,6 +7,7 @@
 #include "cli/commands.hpp"
 #include "cli/log_file.hpp"
 #include "cli/output.hpp"
+#include "cli/replaying.hpp"
 #include "server/desync/report.hpp"
 
 namespace cycloid::cli {
