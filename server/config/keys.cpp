@@ -1,5 +1,6 @@
 #include <chrono>
 #include <cmath>
+#include <utility>
 
 #include "server/config/key_makers.hpp"
 
@@ -132,6 +133,70 @@ WhenMissing when_missing_of(const std::string& word) {
   return word == "wait-neutral" ? WhenMissing::kWaitThenNeutral : WhenMissing::kRepeat;
 }
 
+using TemplateKeys = std::vector<ConfigKey<RoomTemplate>>;
+
+struct KeyRange {
+  double least;
+  double most;
+};
+
+/// A key of a template; none of them changes while a server runs.
+ConfigKey<RoomTemplate> key(const char* name, Kind kind, KeyRange range, const char* otherwise,
+                            std::vector<std::string> choices,
+                            void (*put)(RoomTemplate&, const Value&)) {
+  return {name, kind, range.least, range.most, otherwise, std::move(choices), false, put};
+}
+
+/// What the match is, and what is left of it.
+TemplateKeys match_keys() {
+  using T = RoomTemplate;
+  return {key("scene", Kind::kNeededText, {0, 0}, "", {},
+              [](T& t, const Value& v) { t.settings.scene_name = v.text; }),
+          key("on_first_join", Kind::kFlag, {0, 0}, "false", {},
+              [](T& t, const Value& v) { t.on_first_join = v.flag; }),
+          key("empty_ttl_s", Kind::kInteger, {0, kManySeconds}, "0", {},
+              [](T& t, const Value& v) { t.settings.empty_ttl = std::chrono::seconds(v.integer); }),
+          key("tick_rate_hz", Kind::kNumber, {0, 10000}, "0", {},
+              [](T& t, const Value& v) {
+                t.settings.tick_rate_millihertz =
+                    static_cast<std::uint32_t>(std::lround(v.number * 1000.0));
+              }),
+          key("ticks", Kind::kInteger, {0, 1e15}, "0", {},
+              [](T& t, const Value& v) { t.settings.ticks = as<std::uint64_t>(v); }),
+          key("workers", Kind::kInteger, {1, 64}, "1", {},
+              [](T& t, const Value& v) { t.settings.workers = as<int>(v); }),
+          key("log_directory", Kind::kText, {0, 0}, "", {},
+              [](T& t, const Value& v) { t.settings.log_directory = v.text; }),
+          key("log_sync", Kind::kText, {0, 0}, "interval", {"interval", "tick"},
+              [](T& t, const Value& v) {
+                t.settings.log_sync = v.text == "tick" ? LogSync::kEveryTick : LogSync::kInterval;
+              }),
+          key("stop_on_log_error", Kind::kFlag, {0, 0}, "false", {},
+              [](T& t, const Value& v) { t.settings.stop_on_log_error = v.flag; })};
+}
+
+/// What becomes of inputs that are not there.
+TemplateKeys input_keys() {
+  using T = RoomTemplate;
+  return {
+      key("slow_peer", Kind::kText, {0, 0}, "replace", {"wait", "replace", "spectate", "drop"},
+          [](T& t, const Value& v) { t.settings.slow = slow_peer_of(v.text); }),
+      key("when_missing", Kind::kText, {0, 0}, "repeat",
+          {"repeat", "neutral", "wait-repeat", "wait-neutral"},
+          [](T& t, const Value& v) {
+            t.settings.policy.axes.fill(when_missing_of(v.text));
+            t.settings.policy.buttons.fill(when_missing_of(v.text));
+          }),
+      key("wait_ticks", Kind::kInteger, {0, 1000}, "3", {},
+          [](T& t, const Value& v) { t.settings.policy.wait_ticks_max = as<std::uint32_t>(v); }),
+      key("one_shot_buttons", Kind::kInteger, {0, 65535}, "0", {},
+          [](T& t, const Value& v) { t.settings.policy.one_shot_buttons = as<std::uint16_t>(v); }),
+      key("adaptive_delay", Kind::kFlag, {0, 0}, "false", {},
+          [](T& t, const Value& v) { t.settings.delay.adaptive = v.flag; }),
+      key("spectator_delay_ticks", Kind::kInteger, {0, 1000000}, "0", {},
+          [](T& t, const Value& v) { t.settings.spectator_delay_ticks = as<std::uint64_t>(v); })};
+}
+
 }  // namespace
 
 const std::vector<ConfigSection>& config_sections() {
@@ -142,137 +207,12 @@ const std::vector<ConfigSection>& config_sections() {
 }
 
 const std::vector<ConfigKey<RoomTemplate>>& config_template_keys() {
-  using T = RoomTemplate;
-  static const std::vector<ConfigKey<T>> kKeys = {
-      {"scene",
-       Kind::kNeededText,
-       0,
-       0,
-       "",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.scene_name = v.text; }},
-      {"on_first_join",
-       Kind::kFlag,
-       0,
-       0,
-       "false",
-       {},
-       false,
-       [](T& t, const Value& v) { t.on_first_join = v.flag; }},
-      {"empty_ttl_s",
-       Kind::kInteger,
-       0,
-       kManySeconds,
-       "0",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.empty_ttl = std::chrono::seconds(v.integer); }},
-      {"tick_rate_hz",
-       Kind::kNumber,
-       0,
-       10000,
-       "0",
-       {},
-       false,
-       [](T& t, const Value& v) {
-         t.settings.tick_rate_millihertz =
-             static_cast<std::uint32_t>(std::lround(v.number * 1000.0));
-       }},
-      {"ticks",
-       Kind::kInteger,
-       0,
-       1e15,
-       "0",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.ticks = as<std::uint64_t>(v); }},
-      {"workers",
-       Kind::kInteger,
-       1,
-       64,
-       "1",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.workers = as<int>(v); }},
-      {"slow_peer",
-       Kind::kText,
-       0,
-       0,
-       "replace",
-       {"wait", "replace", "spectate", "drop"},
-       false,
-       [](T& t, const Value& v) { t.settings.slow = slow_peer_of(v.text); }},
-      {"when_missing",
-       Kind::kText,
-       0,
-       0,
-       "repeat",
-       {"repeat", "neutral", "wait-repeat", "wait-neutral"},
-       false,
-       [](T& t, const Value& v) {
-         t.settings.policy.axes.fill(when_missing_of(v.text));
-         t.settings.policy.buttons.fill(when_missing_of(v.text));
-       }},
-      {"wait_ticks",
-       Kind::kInteger,
-       0,
-       1000,
-       "3",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.policy.wait_ticks_max = as<std::uint32_t>(v); }},
-      {"one_shot_buttons",
-       Kind::kInteger,
-       0,
-       65535,
-       "0",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.policy.one_shot_buttons = as<std::uint16_t>(v); }},
-      {"adaptive_delay",
-       Kind::kFlag,
-       0,
-       0,
-       "false",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.delay.adaptive = v.flag; }},
-      {"spectator_delay_ticks",
-       Kind::kInteger,
-       0,
-       1000000,
-       "0",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.spectator_delay_ticks = as<std::uint64_t>(v); }},
-      {"log_directory",
-       Kind::kText,
-       0,
-       0,
-       "",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.log_directory = v.text; }},
-      {"log_sync",
-       Kind::kText,
-       0,
-       0,
-       "interval",
-       {"interval", "tick"},
-       false,
-       [](T& t, const Value& v) {
-         t.settings.log_sync = v.text == "tick" ? LogSync::kEveryTick : LogSync::kInterval;
-       }},
-      {"stop_on_log_error",
-       Kind::kFlag,
-       0,
-       0,
-       "false",
-       {},
-       false,
-       [](T& t, const Value& v) { t.settings.stop_on_log_error = v.flag; }},
-  };
+  static const TemplateKeys kKeys = [] {
+    TemplateKeys keys = match_keys();
+    const TemplateKeys more = input_keys();
+    keys.insert(keys.end(), more.begin(), more.end());
+    return keys;
+  }();
   return kKeys;
 }
 

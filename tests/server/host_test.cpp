@@ -1,6 +1,8 @@
 #include "server/host/host.hpp"
 
 #include <gtest/gtest.h>
+#include <malloc.h>
+#include <netinet/in.h>
 #include <sys/resource.h>
 #include <unistd.h>
 
@@ -271,15 +273,22 @@ TEST(Host, IdleConnectionsCostLittleAndHarmNobody) {
   player.greet("arena");
   ASSERT_TRUE(player.wait_for<protocol::Welcome>());
   constexpr std::size_t kIdle = 200;
-  asio::io_context io;
-  std::vector<asio::ip::tcp::socket> idle;
-  idle.reserve(kIdle);
-  for (std::size_t i = 0; i < kIdle; ++i) {
-    idle.emplace_back(io).connect({asio::ip::address_v4::loopback(), server.port()});
+  sockaddr_in address{};
+  address.sin_family = AF_INET;
+  address.sin_port = htons(server.port());
+  address.sin_addr.s_addr = htonl(INADDR_LOOPBACK);
+  const std::size_t heap = ::mallinfo2().uordblks;
+  std::array<int, kIdle> idle{};
+  for (int& descriptor : idle) {
+    descriptor = ::socket(AF_INET, SOCK_STREAM, 0);
+    ASSERT_EQ(::connect(descriptor, reinterpret_cast<sockaddr*>(&address), sizeof address), 0);
   }
   ASSERT_TRUE(eventually([&] { return server.host().meters().pending.get() == kIdle; }));
+  const auto grown = static_cast<double>(::mallinfo2().uordblks) - static_cast<double>(heap);
+  EXPECT_LE(grown / kIdle, 4096.0);
+  RecordProperty("idle_bytes", static_cast<int>(grown / kIdle));
   for (int i = 0; i < 30; ++i) ASSERT_TRUE(player.wait_for<protocol::InputFrame>());
-  idle.clear();
+  for (const int descriptor : idle) (void)::close(descriptor);
   EXPECT_TRUE(eventually([&] { return server.host().meters().pending.get() == 0; }));
   EXPECT_EQ(server.host().meters().connections.get(), 1u);
 }
