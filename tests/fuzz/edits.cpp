@@ -81,6 +81,10 @@ const std::vector<FuzzTarget>& targets() {
       {"token", run_token, token_seeds},
       {"gate", run_gate, gate_seeds},
 #endif
+#ifdef CYCLOID_NETWORK
+      {"room", run_room, room_seeds},
+      {"configuration", run_configuration, configuration_seeds},
+#endif
       {"state-delta", run_state_delta, state_delta_seeds},
   };
   return kTargets;
