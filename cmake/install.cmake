@@ -31,7 +31,7 @@ foreach(header
   install(FILES ${PROJECT_SOURCE_DIR}/solver/${header}
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/solver/${folder})
 endforeach()
-install(DIRECTORY ${PROJECT_SOURCE_DIR}/protocol/state
+install(DIRECTORY ${PROJECT_SOURCE_DIR}/protocol/state ${PROJECT_SOURCE_DIR}/protocol/log
   DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/protocol FILES_MATCHING PATTERN "*.hpp")
 if(CYCLOID_NETWORK)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/client/replica

@@ -35,8 +35,8 @@ constexpr std::uint32_t checksum_of(std::string_view text) {
 inline constexpr std::uint32_t kLogSchema = checksum_of(kLogSchemaText);
 
 /// Solver versions whose arithmetic gives the bits of this one, so that their logs verify here.
-/// A version goes in when every log of the corpus (tests/determinism/logs) that it wrote verifies, and
-/// all others are refused with both values. The version itself stands last.
+/// A version goes in when every log of the corpus (tests/determinism/logs) that it wrote verifies.
+/// All others are refused with both values. The version itself stands last.
 inline constexpr std::array kBitCompatibleSolverVersions = {solver::kSolverVersion};
 
 }  // namespace cycloid::protocol

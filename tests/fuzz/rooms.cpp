@@ -35,7 +35,11 @@ server::RoomOptions small_room() {
 /// Many connections in one room, as a script of three bytes for each act says.
 class RoomPlay {
  public:
-  RoomPlay() : room_(small_room(), simulation(), hooks()) {}
+  RoomPlay() : room_(small_room(), simulation(), hooks()) {
+    std::vector<std::byte> state;
+    room_.encode_state(state);
+    state_bytes_ = state.size();
+  }
 
   void act(unsigned what, unsigned who, unsigned how) {
     const PeerId id = peers_.empty() ? server::kNobody : peers_[who % peers_.size()];
@@ -58,6 +62,7 @@ class RoomPlay {
       case 5:
         now_ns_ += static_cast<std::int64_t>(how) * 1'000'000;
         room_.advance();
+        check_queues();
         break;
       case 6:
         take(id);
@@ -146,12 +151,18 @@ class RoomPlay {
         fail("a connection that is gone holds a seat");
     }
     if (room_.state() == server::RoomState::kFaulted) fail("peers have faulted the world");
-    const std::size_t queued = room_.statistics().queue_bytes;
-    if (queued > (kQueueBytesMax + 4096) * peers_.size()) fail("more waits than may");
+  }
+
+  /// As counted by the tick that was just made: frames and answers, and the latest snapshot.
+  void check_queues() const {
+    const std::size_t snapshot_bytes_max = 2 * state_bytes_ + 4096;
+    const std::size_t each = kQueueBytesMax + snapshot_bytes_max;
+    if (room_.statistics().queue_bytes > each * peers_.size()) fail("more waits than may");
   }
 
   std::int64_t now_ns_ = 1;
   unsigned chance_ = 0;
+  std::size_t state_bytes_ = 0;
   std::vector<PeerId> peers_;
   std::vector<std::vector<std::byte>> resumes_;
   Room room_;
