@@ -60,9 +60,7 @@ class RoomPlay {
         say(id, protocol::Ack{room_.tick() - how % 8});
         break;
       case 5:
-        now_ns_ += static_cast<std::int64_t>(how) * 1'000'000;
-        room_.advance();
-        check_queues();
+        pass(how);
         break;
       case 6:
         take(id);
@@ -142,6 +140,8 @@ class RoomPlay {
   }
 
   void check() const {
+    if (room_.state() == server::RoomState::kFaulted) fail("peers have faulted the world");
+    if (room_.state() != server::RoomState::kRunning) return;  // A match that is over has no seats.
     std::set<PeerId> holders;
     for (std::size_t i = 0; i < room_.seats().size(); ++i) {
       const server::SeatHold& seat = room_.seats()[i];
@@ -150,11 +150,14 @@ class RoomPlay {
       if (std::find(peers_.begin(), peers_.end(), seat.holder) == peers_.end())
         fail("a connection that is gone holds a seat");
     }
-    if (room_.state() == server::RoomState::kFaulted) fail("peers have faulted the world");
   }
 
-  /// As counted by the tick that was just made: frames and answers, and the latest snapshot.
-  void check_queues() const {
+  void pass(unsigned milliseconds) {
+    const std::uint64_t before = room_.tick();
+    now_ns_ += static_cast<std::int64_t>(milliseconds) * 1'000'000;
+    room_.advance();
+    if (room_.tick() == before) return;
+    // As counted by the tick that was just made: frames and answers, and the latest snapshot.
     const std::size_t snapshot_bytes_max = 2 * state_bytes_ + 4096;
     const std::size_t each = kQueueBytesMax + snapshot_bytes_max;
     if (room_.statistics().queue_bytes > each * peers_.size()) fail("more waits than may");
