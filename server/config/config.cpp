@@ -70,6 +70,7 @@ class Reader {
   explicit Reader(const SceneLoader& load_scene) : load_scene_(load_scene) {}
 
   ConfigResult read(std::string_view text) {
+    if (!check_ascii(text)) return finish();
     toml::parse_result parsed = toml::parse(text);
     if (!parsed) {
       const toml::parse_error& error = parsed.error();
@@ -89,6 +90,16 @@ class Reader {
   }
 
  private:
+  /// toml++ 3.3 runs into undefined behaviour where it asks whether U+00E9 is a space.
+  bool check_ascii(std::string_view text) {
+    const auto other = std::ranges::find_if(text, [](char c) { return (c & 0x80) != 0; });
+    if (other == text.end()) return true;
+    const auto line = 1 + std::count(text.begin(), other, '\n');
+    complain(static_cast<std::uint32_t>(line), "",
+             "a character that is not ASCII; within quotes, write it as \\u00e9");
+    return false;
+  }
+
   void complain(std::uint32_t line, std::string key, std::string reason) {
     result_.mistakes.push_back({line, std::move(key), std::move(reason)});
   }

@@ -82,6 +82,7 @@ class Host {
 
   /// Makes a room. `done` is called on the accept strand once it is there, or cannot be.
   void make_room(const std::string& name, const std::string& of_template, HostedRoom::Done done);
+  /// None, or a room, which must not outlive the host.
   std::shared_ptr<HostedRoom> find(const std::string& name) const;
   std::vector<std::shared_ptr<HostedRoom>> rooms() const;  ///< By name.
   /// Nobody comes in any more, and the rooms end after `deadline` or when they are empty.

@@ -83,7 +83,6 @@ const std::vector<FuzzTarget>& targets() {
 #endif
 #ifdef CYCLOID_NETWORK
       {"room", run_room, room_seeds},
-      {"configuration", run_configuration, configuration_seeds},
 #endif
       {"state-delta", run_state_delta, state_delta_seeds},
   };

@@ -40,8 +40,6 @@ void run_token(Input input);
 std::vector<Seed> token_seeds();
 void run_room(Input input);
 std::vector<Seed> room_seeds();
-void run_configuration(Input input);
-std::vector<Seed> configuration_seeds();
 void run_gate(Input input);
 std::vector<Seed> gate_seeds();
 void run_state_delta(Input input);

@@ -134,6 +134,14 @@ name = "arena"
   EXPECT_EQ(seen, kExpected) << config_mistakes_text("file", read.mistakes);
 }
 
+TEST(Config, WhatIsNotAsciiIsRefusedWithItsLine) {
+  const ConfigResult read = read_config("[server]\n# caf\xc3\xa9\n", scenes::load);
+  ASSERT_FALSE(read.config);
+  ASSERT_EQ(read.mistakes.size(), 1u);
+  EXPECT_EQ(read.mistakes[0].line, 2u);
+  EXPECT_EQ(read.mistakes[0].reason.substr(0, 11), "a character");
+}
+
 TEST(Config, WhatIsNoTomlIsSaidWithItsLine) {
   for (const char* text : {"[server]\nport = \n", "[server]\nport = 1\nport = 2\n"}) {
     const ConfigResult read = read_config(text, load);

@@ -202,8 +202,8 @@ TEST_F(OperationTest, AnAdminSteersRoomsAndEveryActIsOnRecord) {
   EXPECT_EQ(post("/admin/rooms/duel-1/snapshot", wanted).status, 409);  // Never over another.
   std::filesystem::remove(path);
 
-  const auto room = server_->host().find("duel-1");
-  ASSERT_TRUE(eventually([&] { return room->meters().tick.get() > 70; }));
+  const auto tick = [&] { return server_->host().find("duel-1")->meters().tick.get(); };
+  ASSERT_TRUE(eventually([&] { return tick() > 70; }));
   EXPECT_EQ(post("/admin/rooms/duel-1/rewind", R"({"tick": 60})").status, 200);
   EXPECT_EQ(post("/admin/rooms/duel-1/rewind", R"({"tick": 999999})").status, 409);
 
