@@ -17,7 +17,7 @@ class Samples {
   /// The smallest value that at least `permille` / 1000 of all are not above; 0 of none.
   double quantile(std::size_t permille) {
     if (values_.empty()) return 0.0;
-    if (!sorted_) std::sort(values_.begin(), values_.end());  // Total order: numbers of a clock.
+    if (!sorted_) std::sort(values_.begin(), values_.end());  // Total order: a clock has no NaN.
     sorted_ = true;
     const std::size_t at = (values_.size() * permille + 999) / 1000;
     return values_[std::min(values_.size(), std::max<std::size_t>(at, 1)) - 1];

@@ -161,7 +161,7 @@ void Host::draw_misfortunes() {
                                                  settings_->tick_rate_millihertz);
   const auto draw = [&](std::uint32_t count, std::vector<std::int64_t>& times) {
     for (std::uint32_t i = 0; i < count; ++i) times.push_back(random_.between(0, span_ns));
-    std::sort(times.begin(), times.end(), std::greater<>());
+    std::sort(times.begin(), times.end(), std::greater<>());  // Total order: integers.
   };
   draw(settings_->server.pauses, pauses_ns_);
   draw(settings_->server.deaths, deaths_ns_);

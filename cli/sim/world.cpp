@@ -86,7 +86,7 @@ class World {
     for (std::uint32_t i = 0; i < settings_.client.storms; ++i) {
       storms_ns_.push_back(random.between(0, faults_ns()));
     }
-    std::sort(storms_ns_.begin(), storms_ns_.end(), std::greater<>());
+    std::sort(storms_ns_.begin(), storms_ns_.end(), std::greater<>());  // Total order: integers.
   }
 
   void step() {

@@ -9,7 +9,7 @@ std::vector<BodyChange> BodyChanges::compare(std::span<const scenes::Pose> poses
   std::vector<Id> now;
   now.reserve(poses.size());
   for (const scenes::Pose& pose : poses) now.emplace_back(pose.index, pose.generation);
-  std::sort(now.begin(), now.end());
+  std::sort(now.begin(), now.end());  // Total order: no two bodies have one index and generation.
   std::vector<Id> gone;
   std::vector<Id> came;
   std::set_difference(ids_.begin(), ids_.end(), now.begin(), now.end(), std::back_inserter(gone));

@@ -23,6 +23,8 @@ std::array<float, 4> slerp(const std::array<float, 4>& a, std::array<float, 4> b
     cosine = -cosine;
     for (float& value : b) value = -value;
   }
+  // The library's functions, which round otherwise on each platform: poses to be drawn never come
+  // back into a state, an input or a digest.
   double of_a = 1.0 - t;
   double of_b = t;
   if (cosine < 0.9999) {
