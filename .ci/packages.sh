@@ -10,9 +10,8 @@ packages=(
   libssl-dev libsodium-dev                  # TLS; signed tokens
   prometheus-cpp-dev libcivetweb-dev        # metrics; their HTTP server
   libtomlplusplus-dev                       # configuration files
-  libgtest-dev libgmock-dev libbenchmark-dev # tests and benchmarks
+  libgtest-dev libgmock-dev                 # tests
   librapidcheck-dev                         # tests of properties: random cases that shrink
-  python3                                   # scripts that measure and that read objects
   gnuplot-nox                               # figures of the experiments
 )
 

@@ -39,7 +39,7 @@ void bisect_worlds(const Suspect& a, const Suspect& b, std::uint64_t ticks, std:
   finding.name_b = b.name();
   const Course course_a = a.course(ticks);
   const Course course_b = b.course(ticks);
-  finding.ticks = std::min(course_a.digests.size(), course_b.digests.size()) - 1 - course_a.begin;
+  finding.ticks = std::min(course_a.digests.size(), course_b.digests.size()) - 1;
   if (const auto tick = first_difference(course_a, course_b)) {
     finding.ticks = *tick == course_a.begin ? 0 : *tick - 1 - course_a.begin;
     finding.blame = blame_tick(a, b, *tick, fields);
@@ -62,14 +62,14 @@ void compare_inputs(const Match& a, const Match& b, std::uint64_t ticks, Finding
 /// more.
 void check_record(const Match& match, std::uint64_t ticks, Finding& finding) {
   const Course course = run_course(match, ticks, {});
-  for (std::uint64_t tick = match.begin() + 1; tick < course.digests.size(); ++tick) {
+  for (std::uint64_t tick = match.begin() + 1; tick <= course.last_tick(); ++tick) {
     const std::uint64_t recorded = match.recorded_digest(tick);
-    if (recorded == course.digests[static_cast<std::size_t>(tick)]) continue;
-    finding.notes.push_back(
-        match.name + " was recorded by another build, or is damaged: at tick " +
-        std::to_string(tick) + " it says " + hex16(recorded) + ", this program makes " +
-        hex16(course.digests[static_cast<std::size_t>(tick)]) + "; to go on: cycloid bisect " +
-        match.name + " --against PROGRAM, with the cycloid that wrote it");
+    if (recorded == course.at(tick)) continue;
+    finding.notes.push_back(match.name + " was recorded by another build, or is damaged: at tick " +
+                            std::to_string(tick) + " it says " + hex16(recorded) +
+                            ", this program makes " + hex16(course.at(tick)) +
+                            "; to go on: cycloid bisect " + match.name +
+                            " --against PROGRAM, with the cycloid that wrote it");
     return;
   }
 }
@@ -105,7 +105,7 @@ Finding bisect_builds(const BisectOptions& options) {
   const Match match = open_match(options.a, options.loading);
   Finding finding;
   const auto here = suspect_here("this program", match);
-  const auto there = suspect_there(options.against, options.runner, options.a);
+  const auto there = suspect_there({options.against, options.runner}, match, options.loading);
   const std::uint64_t wanted = match.begin() + options.ticks;
   const std::uint64_t ticks = std::min(match.ticks(wanted), wanted);
   bisect_worlds(*here, *there, ticks, options.fields, finding);

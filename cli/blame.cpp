@@ -10,8 +10,8 @@ namespace cycloid::cli {
 
 std::optional<std::uint64_t> first_difference(const Course& a, const Course& b) {
   const std::size_t common = std::min(a.digests.size(), b.digests.size());
-  for (std::size_t tick = 0; tick < common; ++tick)
-    if (a.digests[tick] != b.digests[tick]) return tick;
+  for (std::size_t i = 0; i < common; ++i)
+    if (a.digests[i] != b.digests[i]) return a.begin + i;
   return std::nullopt;
 }
 

@@ -15,18 +15,24 @@ class Suspect {
  public:
   virtual ~Suspect() = default;
   virtual std::string name() const = 0;
-  virtual Course course(std::uint64_t ticks) const = 0;
+  /// As far as tick `last_tick`.
+  virtual Course course(std::uint64_t last_tick) const = 0;
   virtual TickTrace trace(std::uint64_t tick, const TraceDetail& detail) const = 0;
 };
 
 /// A match as this program steps it.
 std::unique_ptr<Suspect> suspect_here(std::string name, const Match& match);
 
-/// A match as another build of this program steps it, which `runner` starts where it is not empty:
-/// "qemu-aarch64 -L /usr/aarch64-linux-gnu". Its calls throw a Failure with kExitIo and the last
-/// words of the program where it does not do what it should.
-std::unique_ptr<Suspect> suspect_there(const std::string& program, const std::string& runner,
-                                       const std::string& match);
+/// Another build of this program.
+struct OtherBuild {
+  std::string program;
+  std::string runner;  ///< What starts it: "qemu-aarch64 -L /usr/aarch64-linux-gnu"; "": nothing.
+};
+
+/// A match, opened here as `loading` says, as another build steps it. Its calls throw a Failure
+/// with kExitIo and the last words of the program where it does not do what it should.
+std::unique_ptr<Suspect> suspect_there(const OtherBuild& build, const Match& match,
+                                       const LoadOptions& loading);
 
 /// Where in a tick two worlds part.
 struct Blame {
@@ -40,7 +46,7 @@ struct Blame {
   std::string other;  ///< Where not the values differ but what there is, in a sentence.
 };
 
-/// The first tick after which the digests differ, or none.
+/// The first tick after which the digests differ, or none. @pre both begin after one tick
 std::optional<std::uint64_t> first_difference(const Course& a, const Course& b);
 
 /// Traces one tick on both sides, ever closer: phases, objects of the first phase that differs,

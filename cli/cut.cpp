@@ -1,5 +1,6 @@
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
@@ -12,10 +13,27 @@ namespace {
 struct CutOptions {
   std::string log;
   LoadOptions loading;
-  std::uint64_t from = 0;
+  std::optional<std::uint64_t> from;  ///< None: where the log begins.
   std::uint64_t to = 0;
   std::string out;
 };
+
+/// Ticks `from` + 1 to `to`.
+struct CutBounds {
+  std::uint64_t from = 0;
+  std::uint64_t to = 0;
+};
+
+CutBounds bounds_of(const CutOptions& options, const LoadedLog& loaded) {
+  const std::uint64_t first = loaded.first_tick() - 1;
+  const std::uint64_t last = loaded.last_tick();
+  const CutBounds bounds{options.from.value_or(first), options.to == 0 ? last : options.to};
+  if (first <= bounds.from && bounds.from <= bounds.to && bounds.to <= last) return bounds;
+  throw Failure(kExitUsage, "--from " + std::to_string(bounds.from) + " --to " +
+                                std::to_string(bounds.to) + ": " + options.log +
+                                " goes from tick " + std::to_string(first) + " to " +
+                                std::to_string(last));
+}
 
 /// The state after tick `from`, as the replay makes it; a Failure where it is not the recorded one.
 scenes::Simulation state_after(const LoadedLog& loaded, std::uint64_t from) {
@@ -32,15 +50,15 @@ scenes::Simulation state_after(const LoadedLog& loaded, std::uint64_t from) {
 }
 
 /// The same cut has the same bytes: its salt and id follow from those of the log and its bounds.
-protocol::LogHeader header_of(const LoadedLog& loaded, std::uint64_t from, std::uint64_t to) {
+protocol::LogHeader header_of(const LoadedLog& loaded, const CutBounds& bounds) {
   protocol::LogHeader header = loaded.log.header;
   const auto mixed = [&](std::uint64_t value) {
-    return (value ^ (from * 0x9e3779b97f4a7c15u)) * 0xff51afd7ed558ccdu + to;
+    return (value ^ (bounds.from * 0x9e3779b97f4a7c15u)) * 0xff51afd7ed558ccdu + bounds.to;
   };
   header.salt = mixed(header.salt);
   header.parent_log_id = header.log_id;
   header.log_id = mixed(header.log_id);
-  header.branch_tick = from;
+  header.branch_tick = bounds.from;
   return header;
 }
 
@@ -56,41 +74,35 @@ protocol::LogKeyframe keyframe_of(const LoadedLog& loaded, const scenes::Simulat
 
 /// Ticks of the log behind `from` as they are, with what they recorded: a cut around a divergence
 /// has it, too.
-Exit cut_log(CutOptions options, bool json) {
+Exit cut_log(const CutOptions& options, bool json) {
   const LoadedLog loaded = load_log(options.log, options.loading);
-  if (options.to == 0) options.to = loaded.last_tick();
-  const std::uint64_t first = loaded.first_tick() - 1;
-  if (options.from < first || options.from > options.to || options.to > loaded.last_tick()) {
-    throw Failure(kExitUsage, "--from " + std::to_string(options.from) + " --to " +
-                                  std::to_string(options.to) + ": " + options.log +
-                                  " goes from tick " + std::to_string(first) + " to " +
-                                  std::to_string(loaded.last_tick()));
-  }
-  const scenes::Simulation begin = state_after(loaded, options.from);
+  const CutBounds bounds = bounds_of(options, loaded);
+  const scenes::Simulation begin = state_after(loaded, bounds.from);
   protocol::Bytes bytes;
-  protocol::LogEncoder encoder(header_of(loaded, options.from, options.to), bytes);
-  if (options.from != 0) encoder.first_keyframe(keyframe_of(loaded, begin), bytes);
+  protocol::LogEncoder encoder(header_of(loaded, bounds), bytes);
+  if (bounds.from != 0) encoder.first_keyframe(keyframe_of(loaded, begin), bytes);
   TickReader reader(loaded);
   std::uint64_t digest = begin.digest();
   OutputFile file(options.out);
-  for (std::uint64_t tick = options.from + 1; tick <= options.to; ++tick) {
+  for (std::uint64_t tick = bounds.from + 1; tick <= bounds.to; ++tick) {
     const protocol::LogTick& read = reader.at(tick);
     encoder.tick(read, bytes);
     digest = read.digest;
     file.write(bytes);
     bytes.clear();
   }
-  encoder.footer({options.to, digest, {}}, bytes);
+  encoder.footer({bounds.to, digest, {}}, bytes);
   file.write(bytes);
   file.close();
   if (const std::string blemish = loaded.blemish(); !blemish.empty())
     std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
+  const Exit exit = loaded.exit();
   if (json)
-    print_json({{"log", options.out}, {"from", options.from}, {"to", options.to}}, kExitGood);
+    print_json({{"log", options.out}, {"from", bounds.from}, {"to", bounds.to}}, exit);
   else
-    std::cout << options.out << ": ticks " << options.from + 1 << " to " << options.to << " of "
+    std::cout << options.out << ": ticks " << bounds.from + 1 << " to " << bounds.to << " of "
               << options.log << "; to repeat: cycloid replay " << options.out << '\n';
-  return kExitGood;
+  return exit;
 }
 
 }  // namespace
@@ -101,8 +113,8 @@ void add_cut(CLI::App& app, Action& action) {
       app, "cut", "Write some ticks of a log as a log of their own, which begins with the state",
       action);
   command->add_option("LOG", options->log, "A .cylog file")->required();
-  command->add_option("--from", options->from, "Begin with the state after this tick")
-      ->capture_default_str();
+  command->add_option("--from", options->from,
+                      "Begin with the state after this tick; else as the log begins");
   command->add_option("--to", options->to, "The last tick; 0: that of the log")
       ->capture_default_str();
   command->add_option("-o,--out", options->out, "The log to write")->required();

@@ -46,38 +46,21 @@ struct Repeated {
 
 /// Steps the cut log from its first state to the tick.
 Repeated repeat_log(const std::string& file, std::uint64_t tick) {
-  const std::vector<std::byte> bytes = read_file(file);
-  const protocol::LogSummary summary = protocol::scan_log(bytes);
-  if (summary.state == protocol::LogState::kCorrupt)
-    throw Failure(kExitCorrupt, file + ": corrupt: " + summary.reason);
-  if (summary.state == protocol::LogState::kIncompatible)
-    throw Failure(kExitIncompatible, file + ": incompatible: " + summary.reason);
-  const scenes::Loaded loaded = scenes::from_binary(summary.header.scene);
-  if (!loaded.scene) throw Failure(kExitCorrupt, mistakes_text(file + ": scene", loaded.mistakes));
-  scenes::Simulation simulation = make_simulation(*loaded.scene, 1);
-  protocol::LogCursor cursor(bytes, summary.start);
-  Repeated repeated{summary.header.branch_tick, ""};
-  for (auto step = cursor.next(); step != protocol::LogCursor::Step::kEnd; step = cursor.next()) {
-    const bool begins = step == protocol::LogCursor::Step::kKeyframe &&
-                        cursor.keyframe().tick == summary.header.branch_tick;
-    if (begins) {
-      const solver::Error error = simulation.decode(cursor.keyframe().state);
-      if (!error.ok()) throw Failure(kExitCorrupt, file + ": keyframe: " + error_text(error));
-    }
-    if (step != protocol::LogCursor::Step::kTick) continue;
-    std::vector<scenes::SeatInput> inputs;
-    for (const protocol::SeatFrame& seat : cursor.tick().frame.seats) inputs.push_back(seat.input);
+  const LoadedLog loaded = load_log(file);
+  if (tick < loaded.first_tick() || tick > loaded.last_tick())
+    throw Failure(kExitCorrupt, file + ": has no tick " + std::to_string(tick));
+  scenes::Simulation simulation = first_state(loaded, 1);
+  TickReader reader(loaded);
+  std::vector<scenes::SeatInput> inputs;
+  for (std::uint64_t now = loaded.first_tick(); now <= tick; ++now) {
+    inputs.clear();
+    for (const protocol::SeatFrame& seat : reader.at(now).frame.seats) inputs.push_back(seat.input);
     const solver::Error error = simulation.step(inputs);
-    if (!error.ok()) {
-      throw Failure(kExitDiverged, file + ": the world does not step to tick " +
-                                       std::to_string(cursor.tick().frame.tick) + ": " +
-                                       error_text(error));
-    }
-    if (simulation.tick() != tick) continue;
-    repeated.digest = hex16(simulation.digest());
-    return repeated;
+    if (error.ok()) continue;
+    throw Failure(kExitDiverged, file + ": the world does not step to tick " + std::to_string(now) +
+                                     ": " + error_text(error));
   }
-  throw Failure(kExitCorrupt, file + ": has no tick " + std::to_string(tick));
+  return {loaded.first_tick() - 1, hex16(simulation.digest())};
 }
 
 Exit repeat(const std::string& file, bool json) {

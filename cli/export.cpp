@@ -5,6 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/log_file.hpp"
 #include "cli/output.hpp"
+#include "protocol/text.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -16,48 +17,18 @@ struct ExportOptions {
   std::string out;
 };
 
-const char* origin_name(protocol::Origin origin) {
-  switch (origin) {
-    case protocol::Origin::kGiven:
-      return "given";
-    case protocol::Origin::kRepeated:
-      return "repeated";
-    case protocol::Origin::kAbsent:
-      return "absent";
-    case protocol::Origin::kNeutral:
-      return "neutral";
-  }
-  return "unknown";
-}
-
-const char* event_name(protocol::EventKind kind) {
-  switch (kind) {
-    case protocol::EventKind::kJoin:
-      return "join";
-    case protocol::EventKind::kLeave:
-      return "leave";
-    case protocol::EventKind::kKick:
-      return "kick";
-    case protocol::EventKind::kLost:
-      return "lost";
-    case protocol::EventKind::kResume:
-      return "resume";
-  }
-  return "unknown";
-}
-
 Json json_of(const protocol::LogTick& tick) {
   Json seats = Json::array();
   for (const protocol::SeatFrame& seat : tick.frame.seats)
-    seats.push_back({{"origin", origin_name(seat.origin)},
+    seats.push_back({{"origin", protocol::origin_name(seat.origin)},
                      {"axes", seat.input.axes},
                      {"buttons", seat.input.buttons}});
   Json object = {{"tick", tick.frame.tick}, {"digest", hex16(tick.digest)}, {"seats", seats}};
   Json events = Json::array();
   for (const protocol::FrameEvent& event : tick.frame.events)
-    events.push_back({{"kind", event_name(event.kind)}, {"seat", event.seat}});
+    events.push_back({{"kind", protocol::event_kind_name(event.kind)}, {"seat", event.seat}});
   for (const protocol::FrameChange& change : tick.frame.changes)
-    events.push_back({{"kind", "input_delay"}, {"value", change.value}});
+    events.push_back({{"kind", protocol::change_kind_name(change.kind)}, {"value", change.value}});
   if (!events.empty()) object["events"] = std::move(events);
   return object;
 }
@@ -85,14 +56,14 @@ void write_csv(const LoadedLog& loaded, std::ostream& out) {
     const std::string begin = std::to_string(number) + "," + hex16(tick.digest) + ",";
     for (std::size_t seat = 0; seat < tick.frame.seats.size(); ++seat) {
       const protocol::SeatFrame& frame = tick.frame.seats[seat];
-      out << begin << origin_name(frame.origin) << ',' << seat;
+      out << begin << protocol::origin_name(frame.origin) << ',' << seat;
       for (const std::int16_t axis : frame.input.axes) out << ',' << axis;
       out << ',' << frame.input.buttons << ",\n";
     }
     for (const protocol::FrameEvent& event : tick.frame.events)
-      out << begin << event_name(event.kind) << ',' << event.seat << ",,,,,,\n";
+      out << begin << protocol::event_kind_name(event.kind) << ',' << event.seat << ",,,,,,\n";
     for (const protocol::FrameChange& change : tick.frame.changes)
-      out << begin << "input_delay,,,,,,," << change.value << '\n';
+      out << begin << protocol::change_kind_name(change.kind) << ",,,,,,," << change.value << '\n';
     if (tick.frame.seats.empty()) out << begin << "tick,,,,,,,\n";
   }
 }
@@ -107,8 +78,7 @@ Exit export_log(const ExportOptions& options) {
   if (!options.out.empty() && !file) throw Failure(kExitIo, options.out + ": cannot be written");
   const std::string blemish = loaded.blemish();
   if (!blemish.empty()) std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
-  const bool torn = loaded.log.state == protocol::LogState::kTorn;
-  return torn && !loaded.salvaged ? kExitCorrupt : kExitGood;
+  return loaded.exit();
 }
 
 }  // namespace

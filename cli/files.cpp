@@ -9,6 +9,7 @@
 #include <sys/stat.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <memory>
 #include <system_error>
 #endif
@@ -30,6 +31,12 @@ static void find_below(const std::string& folder, const std::string& suffix,
     const std::string name = entry.path().generic_string();
     if (name.ends_with(suffix) && entry.is_regular_file()) found.push_back(name);
   }
+}
+
+bool replace_file(const std::string& by, const std::string& file) {
+  std::error_code error;
+  std::filesystem::rename(by, file, error);
+  return !error;
 }
 
 std::string path_from(const std::string& file, const std::string& path) {
@@ -62,6 +69,10 @@ static void find_below(const std::string& folder, const std::string& suffix,
     if (entry->d_type == DT_DIR) find_below(path, suffix, found);
     if (name.ends_with(suffix) && kind_of(path).is_file) found.push_back(path);
   }
+}
+
+bool replace_file(const std::string& by, const std::string& file) {
+  return std::rename(by.c_str(), file.c_str()) == 0;
 }
 
 std::string path_from(const std::string&, const std::string& path) {

@@ -17,6 +17,9 @@ PathKind kind_of(const std::string& path);
 /// Folders behind links are not entered. @throws std::exception where a folder cannot be read.
 std::vector<std::string> files_below(const std::string& folder, const std::string& suffix);
 
+/// Puts a file in the place of another, at once. @returns whether it could.
+bool replace_file(const std::string& by, const std::string& file);
+
 /// How a file names another: the path from the folder of `file`, with '/' between the parts, and an
 /// absolute one where there is no way. Without <filesystem> the path as it is.
 std::string path_from(const std::string& file, const std::string& path);

@@ -75,15 +75,10 @@ Json json_of(const LoadedLog& loaded) {
   return object;
 }
 
-Exit exit_of(const LoadedLog& loaded) {
-  const bool torn = loaded.log.state == protocol::LogState::kTorn;
-  return torn && !loaded.salvaged ? kExitCorrupt : kExitGood;
-}
-
 Exit print_info(const InfoOptions& options, bool json) {
   const LoadedLog loaded = load_log(options.log, options.loading);
   Json object = json_of(loaded);
-  const Exit exit = exit_of(loaded);
+  const Exit exit = loaded.exit();
   if (json) {
     print_json(std::move(object), exit);
     return exit;

@@ -25,6 +25,10 @@ std::string LoadedLog::blemish() const {
   return text;
 }
 
+Exit LoadedLog::exit() const {
+  return log.state == LogState::kTorn && !salvaged ? kExitCorrupt : kExitGood;
+}
+
 LoadedLog load_log(const std::string& file, const LoadOptions& options) {
   return parse_log(file, read_file(file), options);
 }
@@ -32,7 +36,8 @@ LoadedLog load_log(const std::string& file, const LoadOptions& options) {
 LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes,
                     const LoadOptions& options) {
   protocol::LogSummary log = protocol::scan_log(bytes);
-  const bool salvaged = options.salvage && log.good_bytes != 0;
+  const bool damaged = log.state == LogState::kCorrupt || log.state == LogState::kTorn;
+  const bool salvaged = options.salvage && damaged && log.good_bytes != 0;
   if (log.state == LogState::kCorrupt && !salvaged) {
     const bool helps = log.good_bytes != 0 && log.tick_count() != 0;
     throw Failure(kExitCorrupt,

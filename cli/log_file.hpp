@@ -19,12 +19,15 @@ struct LoadedLog {
   protocol::LogSummary log;
   std::shared_ptr<const std::vector<std::byte>> bytes;  ///< The good prefix.
   scenes::Scene scene;
-  bool salvaged = false;  ///< What is behind the good prefix was given up on purpose.
+  bool salvaged = false;  ///< Torn or corrupt, and only its good prefix was asked for.
 
   std::uint64_t first_tick() const { return log.header.branch_tick + 1; }
   std::uint64_t last_tick() const { return log.last_tick; }
   /// Whether it ends as a log should, or why not and what is lost.
   std::string blemish() const;
+  /// Of a command that has done with it what it could: a log that was not closed is a match that
+  /// was killed, its ticks are good; one that is torn has lost something.
+  Exit exit() const;
 };
 
 struct LoadOptions {

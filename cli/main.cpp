@@ -31,9 +31,11 @@ void add_salvage_option(CLI::App* command, LoadOptions& options) {
 }
 
 void add_lanes_option(CLI::App* command, int& lanes) {
-  command->add_option("--lanes", lanes, "Contacts an instruction: 1, 4, 8 or 16; changes no bit")
+  command
+      ->add_option("--lanes", lanes,
+                   "Contacts an instruction: 1, 4, 8, 16, or 0 for what suits; changes no bit")
       ->capture_default_str()
-      ->check(CLI::IsMember({1, 4, 8, 16}));
+      ->check(CLI::IsMember({0, 1, 4, 8, 16}));
 }
 
 static Exit parse_and_run(int argc, char** argv) {
@@ -59,9 +61,13 @@ static Exit parse_and_run(int argc, char** argv) {
   add_diff(app, action);
   add_trace(app, action);
   add_bisect(app, action);
+  add_profile(app, action);
   add_scene(app, action);
 #ifdef CYCLOID_EXPERIMENTS
   add_experiments(app, action);
+  add_trials(app, action);
+  add_chart(app, action);
+  add_tune(app, action);
 #endif
   add_version(app, action);
   try {

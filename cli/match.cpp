@@ -67,7 +67,6 @@ Course run_course(const Match& match, std::uint64_t ticks, const StepSetting& se
   scenes::Simulation simulation = match.start(setting);
   Course course;
   course.begin = match.begin();
-  course.digests.assign(static_cast<std::size_t>(course.begin), 0);
   course.digests.push_back(simulation.digest());
   for (std::uint64_t tick = course.begin + 1; tick <= ticks && course.fault.empty(); ++tick) {
     const solver::Error error = simulation.step(match.inputs(tick, simulation.seats()));

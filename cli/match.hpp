@@ -14,7 +14,7 @@ namespace cycloid::cli {
 /// How a match is stepped; changes no bit.
 struct StepSetting {
   int workers = 1;
-  int lanes = 4;
+  int lanes = kLanesDefault;
 };
 
 /// A match that can be stepped any number of times: a scene by the frames of a log, or by its
@@ -49,9 +49,16 @@ std::string input_difference(const std::vector<scenes::SeatInput>& a,
 
 /// A match from its beginning on: the digest after every tick.
 struct Course {
-  std::uint64_t begin = 0;             ///< As of the match; the digests of ticks before are 0.
-  std::vector<std::uint64_t> digests;  ///< By tick; [begin] is that of the world as it was made.
+  std::uint64_t begin = 0;             ///< As of the match.
+  std::vector<std::uint64_t> digests;  ///< Of tick `begin`, as the world was made, and those after.
   std::string fault;  ///< Why the tick of the last digest could not be made, or "".
+
+  /// @pre there is a digest
+  std::uint64_t last_tick() const { return begin + digests.size() - 1; }
+  /// @pre begin <= tick <= last_tick()
+  std::uint64_t at(std::uint64_t tick) const {
+    return digests[static_cast<std::size_t>(tick - begin)];
+  }
 };
 
 /// One tick, phase by phase.

@@ -10,12 +10,6 @@
 
 namespace cycloid::cli {
 
-std::string hex16(std::uint64_t value) {
-  std::string text(16, '0');
-  for (std::size_t i = text.size(); i-- > 0; value >>= 4) text[i] = "0123456789abcdef"[value & 15];
-  return text;
-}
-
 void print_json(Json object, Exit exit) {
   object["exit"] = static_cast<int>(exit);
   // A name in a scene may hold any bytes; what is not UTF-8 must not end the program.
@@ -40,8 +34,8 @@ void write_file(const std::string& file, const std::string& bytes) {
   if (!stream) throw Failure(kExitIo, file + ": cannot be written");
 }
 
-scenes::Scene load_scene(const std::string& what) {
-  scenes::Loaded loaded = scenes::load(what);
+scenes::Scene load_scene(const std::string& what, scenes::Untuned untuned) {
+  scenes::Loaded loaded = scenes::load(what, untuned);
   if (loaded.scene) return std::move(*loaded.scene);
   const bool is_file = kind_of(what).exists;
   if (is_file) read_file(what);  // Says so where it cannot be read.

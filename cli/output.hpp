@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/exit_codes.hpp"
+#include "protocol/text.hpp"
 #include "scenes/catalogue.hpp"
 
 namespace cycloid::cli {
@@ -22,8 +23,7 @@ struct Failure : std::runtime_error {
   Exit exit;
 };
 
-/// A digest as it is always written: 16 hexadecimal digits.
-std::string hex16(std::uint64_t value);
+using protocol::hex16;
 
 /// `object` with the exit code as its last member, on one line of stdout.
 void print_json(Json object, Exit exit);
@@ -34,7 +34,8 @@ void write_file(const std::string& file, const std::string& bytes);
 
 /// A catalogue scene or a scene file. A Failure names each mistake: kExitUsage where there is no
 /// such name, kExitCorrupt where the file is no scene.
-scenes::Scene load_scene(const std::string& what);
+scenes::Scene load_scene(const std::string& what,
+                         scenes::Untuned untuned = scenes::Untuned::kRefused);
 
 /// "FILE: path: reason", one line per mistake, without the last newline.
 std::string mistakes_text(const std::string& file, const std::vector<scenes::Mistake>& mistakes);

@@ -18,14 +18,6 @@ struct ReplayCommand {
   int lanes = kLanesDefault;
 };
 
-/// A log that was not closed is a match that was killed: its ticks are good. One that is torn has
-/// lost something, which is well only where that was said to be.
-Exit exit_of(const LoadedLog& loaded, const Replayed& replayed) {
-  if (replayed.divergence) return kExitDiverged;
-  const bool torn = loaded.log.state == protocol::LogState::kTorn;
-  return torn && !loaded.salvaged ? kExitCorrupt : kExitGood;
-}
-
 void check_bounds(const ReplayCommand& options, const LoadedLog& loaded) {
   if (options.to > loaded.last_tick()) {
     throw Failure(kExitUsage, "--to: " + options.log + " has only " +
@@ -59,7 +51,7 @@ Exit replay_log(const ReplayCommand& options, bool json) {
     std::cout << tick << ' ' << hex16(digest) << '\n';
   };
   const Replayed replayed = replay(loaded, replaying);
-  const Exit exit = exit_of(loaded, replayed);
+  const Exit exit = replayed.divergence ? kExitDiverged : loaded.exit();
   print_words(options, loaded, replayed);
   if (json) {
     Json object = {{"log", options.log},          {"scene", loaded.log.header.scene_name},

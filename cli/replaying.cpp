@@ -19,6 +19,10 @@ constexpr std::uint64_t kTicksPerLook = 16;
 LogCursor begin_at(const LoadedLog& loaded, std::uint64_t from, scenes::Simulation& simulation) {
   const std::uint64_t tick = std::max(from, loaded.log.header.branch_tick);
   const protocol::KeyframePlace* place = loaded.log.keyframe_before(tick);
+  if (place == nullptr && loaded.log.header.branch_tick != 0) {
+    throw Failure(kExitCorrupt, loaded.file + ": corrupt: no keyframe of tick " +
+                                    std::to_string(loaded.log.header.branch_tick));
+  }
   if (place == nullptr || tick == 0) return {*loaded.bytes, loaded.log.start};
   LogCursor cursor(*loaded.bytes, loaded.log.start, *place);
   if (cursor.next() != LogStep::kKeyframe)

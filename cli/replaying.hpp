@@ -11,7 +11,7 @@
 namespace cycloid::cli {
 
 /// As many as a world takes by itself.
-inline constexpr int kLanesDefault = 4;
+inline constexpr int kLanesDefault = 0;  ///< Each step takes the width that suits it.
 
 /// A tick whose digest is not the recorded one.
 struct Divergence {

@@ -152,7 +152,7 @@ Exit serve(ServeCommand command, bool json) {
   options.scene_name = options.scene.name;
   options.tick_rate_millihertz =
       static_cast<std::uint32_t>(std::lround(command.tick_rate * 1000.0));
-  if (command.log_sync == "tick") options.log_sync = server::LogSync::kEveryTick;
+  options.log_sync = server::log_sync_of(command.log_sync);
 
   const auto on_listening = [&](std::uint16_t port) {
     (json ? std::cerr : std::cout)
@@ -234,9 +234,11 @@ void add_serve(CLI::App& app, Action& action) {
   serving->add_option("--log", options.log, "Write the match to this file, which must be new");
   serving
       ->add_option("--log-sync", command->log_sync,
-                   "When the log is on the disk: 100 ms later, or before the tick leaves")
+                   "When the log is on the disk: 100 ms later, before the tick leaves, or as the "
+                   "system sees fit")
       ->capture_default_str()
-      ->check(CLI::IsMember({"interval", "tick"}));
+      ->check(CLI::IsMember(
+          std::vector<std::string>(server::kLogSyncNames.begin(), server::kLogSyncNames.end())));
   serving->add_flag("--stop-on-log-error", options.stop_on_log_error,
                     "End the match when the log cannot be written");
   add_process(*serving, *command);

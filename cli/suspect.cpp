@@ -15,7 +15,9 @@ class SuspectHere : public Suspect {
  public:
   SuspectHere(std::string name, const Match& match) : name_(std::move(name)), match_(match) {}
   std::string name() const override { return name_; }
-  Course course(std::uint64_t ticks) const override { return run_course(match_, ticks, {}); }
+  Course course(std::uint64_t last_tick) const override {
+    return run_course(match_, last_tick, {});
+  }
   TickTrace trace(std::uint64_t tick, const TraceDetail& detail) const override {
     return trace_tick(match_, tick, detail, {});
   }
@@ -34,9 +36,9 @@ std::optional<Course> course_from_lines(const std::string& lines) {
   while (stream >> tick >> text) {
     std::uint64_t digest = 0;
     const char* end = text.data() + text.size();
-    if (course.digests.empty()) course.digests.resize(static_cast<std::size_t>(tick));
+    if (course.digests.empty()) course.begin = tick;
     const bool read = std::from_chars(text.data(), end, digest, 16).ptr == end;
-    if (!read || tick != course.digests.size()) return std::nullopt;
+    if (!read || tick != course.begin + course.digests.size()) return std::nullopt;
     course.digests.push_back(digest);
   }
   if (!stream.eof() || course.digests.empty()) return std::nullopt;
@@ -45,21 +47,27 @@ std::optional<Course> course_from_lines(const std::string& lines) {
 
 class SuspectThere : public Suspect {
  public:
-  SuspectThere(std::string program, const std::string& runner, std::string match)
-      : program_(std::move(program)), match_(std::move(match)) {
-    std::istringstream words(runner);
+  SuspectThere(const OtherBuild& build, const Match& match, const LoadOptions& loading)
+      : program_(build.program), match_(match.name), begin_(match.begin()) {
+    std::istringstream words(build.runner);
     for (std::string word; words >> word;) command_.push_back(word);
     const bool beside = program_.find('/') == std::string::npos && kind_of(program_).is_file;
     command_.push_back(beside ? "./" + program_ : program_);  // Not one of that name in PATH.
     command_.insert(command_.end(), {"trace", match_});
+    if (match.log && loading.salvage) command_.push_back("--salvage");
   }
   std::string name() const override { return program_; }
 
-  Course course(std::uint64_t ticks) const override {
-    const std::string out = run({"--ticks", std::to_string(ticks)});
+  Course course(std::uint64_t last_tick) const override {
+    const std::string out = run({"--ticks", std::to_string(last_tick - begin_)});
     std::optional<Course> course = course_from_lines(out);
     if (!course) throw Failure(kExitIo, program_ + ": trace: not lines of 'tick digest'");
-    if (course->digests.size() <= ticks) course->fault = "the world does not step";
+    if (course->begin != begin_) {
+      throw Failure(kExitIo, program_ + ": trace: begins with tick " +
+                                 std::to_string(course->begin) + ", " + match_ + " with tick " +
+                                 std::to_string(begin_));
+    }
+    if (course->last_tick() < last_tick) course->fault = "the world does not step";
     return std::move(*course);
   }
 
@@ -91,6 +99,7 @@ class SuspectThere : public Suspect {
 
   std::string program_;
   std::string match_;
+  std::uint64_t begin_;
   std::vector<std::string> command_;
 };
 
@@ -100,9 +109,9 @@ std::unique_ptr<Suspect> suspect_here(std::string name, const Match& match) {
   return std::make_unique<SuspectHere>(std::move(name), match);
 }
 
-std::unique_ptr<Suspect> suspect_there(const std::string& program, const std::string& runner,
-                                       const std::string& match) {
-  return std::make_unique<SuspectThere>(program, runner, match);
+std::unique_ptr<Suspect> suspect_there(const OtherBuild& build, const Match& match,
+                                       const LoadOptions& loading) {
+  return std::make_unique<SuspectThere>(build, match, loading);
 }
 
 }  // namespace cycloid::cli

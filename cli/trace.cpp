@@ -26,15 +26,15 @@ Exit print_course(const TraceCommand& options, bool json) {
   const Course course = run_course(match, ticks, options.setting);
   const Exit exit = course.fault.empty() ? kExitGood : kExitDiverged;
   Json digests = Json::array();
-  for (std::size_t tick = course.begin; tick < course.digests.size(); ++tick) {
-    const std::string digest = hex16(course.digests[tick]);
+  for (std::uint64_t tick = course.begin; tick <= course.last_tick(); ++tick) {
+    const std::string digest = hex16(course.at(tick));
     if (json) digests.push_back({{"tick", tick}, {"digest", digest}});
     if (!json) std::cout << tick << ' ' << digest << '\n';
   }
   if (json) print_json({{"digests", digests}, {"fault", course.fault}}, exit);
   if (!course.fault.empty()) {
     std::cerr << "cycloid: " << match.name << ": the world does not step to tick "
-              << course.digests.size() - 1 << ": " << course.fault << '\n';
+              << course.last_tick() << ": " << course.fault << '\n';
   }
   return exit;
 }

@@ -9,8 +9,10 @@ namespace cycloid::client {
 /// How to come back after a connection broke.
 struct ReconnectOptions {
   bool on = false;
-  std::chrono::milliseconds first{100};       ///< Longest wait before the first try.
-  std::chrono::milliseconds longest{5000};    ///< No wait is longer, however often it failed.
+  std::chrono::milliseconds first{100};  ///< Longest wait before the first try.
+  /// No wait is longer, however often it failed; a connection that has worked for so long makes
+  /// the next wait a first one.
+  std::chrono::milliseconds longest{5000};
   std::chrono::milliseconds deadline{60000};  ///< From the break; then it gives up.
   std::uint64_t seed = 0;  ///< Of the jitter: unequal for clients that lose one server at once.
   /// Join as somebody new where the server no longer knows the seat's resume token.

@@ -31,10 +31,9 @@ struct JoinOptions {
   protocol::Profile profile = protocol::Profile::kExact;  ///< Of a snapshot client's states.
   std::uint32_t predict_ticks = 0;  ///< Most ticks that a lockstep client predicts, up to 64.
   ReconnectOptions reconnect;
-  std::shared_ptr<StateDecoder> decoder;  ///< Where empty: a DeltaDecoder.
-  std::shared_ptr<Witness> witness;       ///< Where empty: an Evidence, for desync reports.
-  std::shared_ptr<const ClientTls> tls;   ///< Whom to trust; empty: plain TCP.
-  std::uint64_t ticks = 0;                ///< Leave after so many ticks of the match; 0: stay.
+  std::shared_ptr<Witness> witness;      ///< Where empty: an Evidence, for desync reports.
+  std::shared_ptr<const ClientTls> tls;  ///< Whom to trust; empty: plain TCP.
+  std::uint64_t ticks = 0;               ///< Leave after so many ticks of the match; 0: stay.
   int workers = 1;
   InputSource input;  ///< Where empty: scenes::scripted_input of the scene.
   std::chrono::milliseconds connect{5000};
@@ -42,7 +41,7 @@ struct JoinOptions {
   std::chrono::milliseconds silence{10000};
   /// Asked about every 50 ms, on the thread of `join`; true makes it leave.
   std::function<bool()> should_stop;
-  /// Told whenever messages were taken in, such as to draw the state.
+  /// Told whenever messages were taken in or ticks predicted, such as to draw the state.
   std::function<void(Follower&)> on_progress;
   /// Told each welcome, such as to keep its resume token.
   std::function<void(const protocol::Welcome&)> on_welcome;
@@ -79,7 +78,7 @@ struct JoinReport {
 
 /// Plays in a room until the ticks are over, the server says goodbye or sends us away, or the
 /// connection breaks for good. Blocks; but never longer than the deadlines where the server does
-/// not answer.
+/// not answer, or as long as the system's name service takes, which nothing can interrupt.
 JoinReport join(const JoinOptions& options);
 
 }  // namespace cycloid::client

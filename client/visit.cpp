@@ -63,6 +63,8 @@ Visit::~Visit() {
 }
 
 void Visit::begin(std::chrono::milliseconds wait) {
+  attempt_.reset();  // Counted already; and the options that it looks at change below.
+  working_since_.reset();
   auto simulation = scenes::Simulation::create(options_.scene);
   solver::Error error = simulation.ok() ? solver::Error{} : simulation.error();
   if (error.ok()) error = simulation.value().set_workers(options_.workers);
@@ -74,7 +76,6 @@ void Visit::begin(std::chrono::milliseconds wait) {
   }
   options_.resume = resume_;
   options_.room = room_;
-  // The old one has run dry; it goes before its options change under it.
   attempt_ = std::make_unique<Attempt>(options_, std::move(simulation.value()), wait);
   if (report_.progress.snapshots != 0) attempt_->count_from(report_.progress.first_tick);
 }
@@ -94,12 +95,16 @@ void Visit::keep_welcome() {
   room_ = welcome.room.empty() ? options_.room : welcome.room;
   welcomed_ = true;
   if (attempt_->follower().progress().snapshots == 0) return;
+  const auto now = Clock::now();
+  if (!working_since_) working_since_ = now;
   if (broken_) {
     ++report_.reconnects;
-    if (options_.resume.empty()) ++report_.fresh_joins;
+    if (forgotten_) ++report_.fresh_joins;
   }
   broken_.reset();
-  backoff_.reset();
+  forgotten_ = false;
+  // A server that breaks down again at once is not asked again at once.
+  if (now - *working_since_ >= options_.reconnect.longest) backoff_.reset();
 }
 
 void Visit::attempt_ended() {
@@ -128,6 +133,7 @@ bool Visit::comes_back(const Attempt& ended) {
   if (code != protocol::Refusal::kResumeUnknown) return may_pass(code);
   if (!options_.reconnect.fresh_join || resume_.empty()) return false;
   resume_.clear();
+  forgotten_ = true;
   return true;
 }
 

@@ -20,6 +20,8 @@ class Visit {
  public:
   /// The first connection begins. Where the scene cannot run the visit is over at once.
   explicit Visit(JoinOptions options);
+  /// Says goodbye where it is connected: at most the farewell deadline of the connection, or as
+  /// long as the system's name service takes where a name is being looked up.
   ~Visit();
   Visit(const Visit&) = delete;
   Visit& operator=(const Visit&) = delete;
@@ -55,9 +57,12 @@ class Visit {
   std::vector<std::byte> resume_;
   std::string room_;
   bool welcomed_ = false;  ///< Once at least.
+  bool forgotten_ =
+      false;  ///< The server no longer knew our resume token; it has let nobody in yet.
   bool stopping_ = false;
   bool over_ = false;
-  std::optional<Clock::time_point> broken_;  ///< Since when there is no state from a server.
+  std::optional<Clock::time_point> broken_;         ///< Since when there is no state from a server.
+  std::optional<Clock::time_point> working_since_;  ///< The first state of this connection.
 };
 
 }  // namespace cycloid::client

@@ -15,11 +15,11 @@ install(TARGETS ${CYCLOID_INSTALLED} EXPORT cycloidTargets
   LIBRARY DESTINATION ${CMAKE_INSTALL_LIBDIR}
   RUNTIME DESTINATION ${CMAKE_INSTALL_BINDIR})
 
-# The headers of a folder itself, and of client/replica: deeper folders and the two of the step are
-# how it is done inside, and client/net would ask for Asio.
+# The headers of a folder itself, and of client/replica: deeper folders and what a step works with
+# are how it is done inside, and client/net would ask for Asio.
 foreach(folder IN LISTS CYCLOID_HEADER_FOLDERS)
   file(GLOB headers CONFIGURE_DEPENDS ${PROJECT_SOURCE_DIR}/${folder}/*.hpp)
-  list(FILTER headers EXCLUDE REGEX "/step_(context|scratch)\\.hpp$")
+  list(FILTER headers EXCLUDE REGEX "/(step_(context|memory|scratch)|forget_pairs)\\.hpp$")
   install(FILES ${headers} DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/${folder})
 endforeach()
 # And what the interface of a world names in deeper folders: queries, characters, constraints of the

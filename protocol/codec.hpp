@@ -15,6 +15,9 @@ using Bytes = std::vector<std::byte>;
 /// One size-prefixed FlatBuffer: 4 bytes little-endian payload size, then the payload.
 Bytes encode(const ClientMessage& message);
 Bytes encode(const ServerMessage& message);
+/// A frame in half of the bytes, for a client of minor version kPackedFramesMinor at least. It is
+/// decoded to an InputFrame like any other.
+Bytes encode_packed(const InputFrame& frame);
 
 /// A message, or why the bytes are none. `payload` is without the size prefix.
 template <class Message>
@@ -24,7 +27,8 @@ struct Decoded {
 };
 
 /// Verified (structure, depth and table limits per direction), then validated (ranges, unknown
-/// enumerators, lengths, UTF-8). Never reads outside `payload`; allocates at most its size.
+/// enumerators, lengths, UTF-8). Never reads outside `payload`; allocates at most its size, or
+/// 12 times that of a packed frame.
 Decoded<ClientMessage> decode_client(std::span<const std::byte> payload);
 Decoded<ServerMessage> decode_server(std::span<const std::byte> payload);
 

@@ -41,7 +41,9 @@ inline constexpr Refusal kLastRefusal = Refusal::kResyncLimit;
 /// Peers of another version do not understand each other; of another minor version they do, and the
 /// newer one leaves out what the older one has not heard of.
 inline constexpr std::uint32_t kProtocolVersion = 2;
-inline constexpr std::uint16_t kProtocolMinor = 0;
+inline constexpr std::uint16_t kProtocolMinor = 1;
+/// From this minor version on a client understands packed frames.
+inline constexpr std::uint16_t kPackedFramesMinor = 1;
 
 /// Most bytes of one message's payload, by direction and by what the peer has proved. Checked
 /// before anything is allocated.

@@ -233,6 +233,14 @@ class BinaryReader {
           from.registers(), from.particles(), from.links(),  from.pins()};
   }
 
+  void read(const fb::Accuracy& from, SceneAccuracy& to) {
+    to.error_m = from.error_m();
+    to.error_percent = from.error_percent();
+    if (from.tuned() == nullptr) return;
+    to.tuned.solver_version = from.tuned()->solver_version();
+    if (from.tuned()->tuning() != nullptr) read(*from.tuned()->tuning(), to.tuned.tuning);
+  }
+
   void read(const fb::Scene& from, Scene& to) {
     to.name = text(from.name());
     to.summary = text(from.summary());
@@ -248,6 +256,7 @@ class BinaryReader {
     read_all(from.characters(), to.characters);
     read_all(from.prefabs(), to.prefabs);
     read_all(from.seats(), to.seats);
+    if (from.accuracy() != nullptr) read(*from.accuracy(), to.accuracy);
   }
 
  private:
@@ -262,7 +271,7 @@ class BinaryReader {
   bool overdrawn_ = false;
 };
 
-Loaded from_binary(std::span<const std::byte> bytes) {
+Loaded from_binary(std::span<const std::byte> bytes, Untuned untuned) {
   Loaded loaded;
   const auto refuse = [&](const char* reason) {
     loaded.mistakes.push_back({"", reason});
@@ -280,7 +289,7 @@ Loaded from_binary(std::span<const std::byte> bytes) {
   reader.read(*fb::GetScene(data), scene);
   drop_zero_signs(scene);
   if (reader.overdrawn()) return refuse("is a damaged binary scene: parts of it overlap");
-  loaded.mistakes = check(scene);
+  loaded.mistakes = check(scene, untuned);
   if (loaded.mistakes.empty()) loaded.scene = std::move(scene);
   return loaded;
 }

@@ -1,4 +1,5 @@
 #include "scene_generated.h"
+#include "scenes/accuracy.hpp"
 #include "scenes/catalogue.hpp"
 
 namespace cycloid::scenes {
@@ -237,6 +238,16 @@ static std::unique_ptr<fb::LimitsT> packed(const solver::Limits& from) {
   return to;
 }
 
+static std::unique_ptr<fb::AccuracyT> packed(const SceneAccuracy& from) {
+  auto to = std::make_unique<fb::AccuracyT>();
+  to->error_m = from.error_m;
+  to->error_percent = from.error_percent;
+  to->tuned = std::make_unique<fb::TunedChoiceT>();
+  to->tuned->solver_version = from.tuned.solver_version;
+  to->tuned->tuning = packed(from.tuned.tuning);
+  return to;
+}
+
 std::vector<std::byte> to_binary(const Scene& scene) {
   fb::SceneT to;
   to.name = scene.name;
@@ -253,6 +264,8 @@ std::vector<std::byte> to_binary(const Scene& scene) {
   pack_all(scene.characters, to.characters);
   pack_all(scene.prefabs, to.prefabs);
   pack_all(scene.seats, to.seats);
+  // Scenes that state none keep the bytes that they had before there was one.
+  if (states_accuracy(scene)) to.accuracy = packed(scene.accuracy);
   flatbuffers::FlatBufferBuilder builder;
   fb::FinishSceneBuffer(builder, fb::Scene::Pack(builder, &to));
   const auto* data = reinterpret_cast<const std::byte*>(builder.GetBufferPointer());

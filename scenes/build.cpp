@@ -2,6 +2,7 @@
 
 #include <map>
 
+#include "scenes/accuracy.hpp"
 #include "scenes/characters.hpp"
 #include "scenes/reasons.hpp"
 #include "scenes/weave.hpp"
@@ -84,7 +85,7 @@ class Builder {
     solver::WorldDef<D> def;
     def.gravity = vec<D>(scene_.gravity);
     def.tick_s = 1.0f / scene_.tick_hz;
-    def.tuning = scene_.tuning;
+    def.tuning = tuning_of(scene_);
     def.limits = scene_.limits;
     def.materials.clear();
     for (const SceneMaterial& material : scene_.materials)
@@ -94,14 +95,14 @@ class Builder {
     return def;
   }
 
-  static std::string world_path(const Error& error) {
+  std::string world_path(const Error& error) const {
     const std::string field = error.field;
     if (error.index >= 0) return "/materials/" + std::to_string(error.index) + "/" + field;
     if (field == "gravity" || field == "materials") return "/" + field;
     if (field == "tick_s") return "/tick_hz";
     if (field.starts_with("limits.")) return "/limits/" + field.substr(7);
     if (field.starts_with("floating_point_")) return field;  // Of the process, not of the scene.
-    return "/tuning/" + field;
+    return tuning_path(scene_, field);
   }
 
   std::uint32_t material_index(const std::string& name) const {

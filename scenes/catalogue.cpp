@@ -6,6 +6,7 @@
 
 #include "scenes/embedded.hpp"
 #include "scenes/generators/generators.hpp"
+#include "scenes/trials.hpp"
 
 namespace cycloid::scenes {
 
@@ -101,13 +102,15 @@ Loaded find(std::string_view name) {
   }
   for (const EmbeddedScene& embedded : embedded_scenes())
     if (embedded.name == name) return from_json(embedded.json);
+  for (const Trial& trial : trials())
+    if (trial.name == name) return checked(trial.make());
   std::string known;
   for (const EmbeddedScene& embedded : embedded_scenes())
     known += (known.empty() ? "" : ", ") + std::string(embedded.name);
   return mistake("there is no built-in scene '" + std::string(name) + "'; there are " + known);
 }
 
-Loaded load_file(const std::string& file) {
+Loaded load_file(const std::string& file, Untuned untuned) {
   std::ifstream stream(file, std::ios::binary);
   if (!stream) return mistake("cannot be read");
   stream.seekg(0, std::ios::end);
@@ -119,12 +122,12 @@ Loaded load_file(const std::string& file) {
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
     return mistake("cannot be read");
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  if (first != std::string::npos && bytes[first] == '{') return from_json(bytes);
-  return from_binary(std::as_bytes(std::span(bytes)));
+  if (first != std::string::npos && bytes[first] == '{') return from_json(bytes, untuned);
+  return from_binary(std::as_bytes(std::span(bytes)), untuned);
 }
 
-Loaded load(const std::string& what) {
-  if (std::ifstream(what).good()) return load_file(what);
+Loaded load(const std::string& what, Untuned untuned) {
+  if (std::ifstream(what).good()) return load_file(what, untuned);
   return find(what);
 }
 

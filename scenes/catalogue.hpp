@@ -23,6 +23,10 @@ struct Loaded {
 /// So many mistakes end the search for more: a hostile file is nothing else.
 inline constexpr std::size_t kMistakesMax = 1000;
 
+/// What to do with a scene that asks for an accuracy for which this solver has chosen nothing: only
+/// what chooses takes it.
+enum class Untuned : std::uint32_t { kRefused, kAllowed };
+
 struct CatalogueEntry {
   std::string name;        ///< "half-pipe"
   std::string summary;     ///< One sentence.
@@ -41,18 +45,18 @@ std::vector<Scene> generated_defaults();
 
 /// A file: JSON by its first character '{', else the binary form.
 /// @returns a mistake with an empty path where the file cannot be read.
-Loaded load_file(const std::string& file);
+Loaded load_file(const std::string& file, Untuned untuned = Untuned::kRefused);
 
 /// A built-in name, or a file where `what` names an existing file.
-Loaded load(const std::string& what);
+Loaded load(const std::string& what, Untuned untuned = Untuned::kRefused);
 
-Loaded from_json(std::string_view text);
-Loaded from_binary(std::span<const std::byte> bytes);
+Loaded from_json(std::string_view text, Untuned untuned = Untuned::kRefused);
+Loaded from_binary(std::span<const std::byte> bytes, Untuned untuned = Untuned::kRefused);
 std::string to_json(const Scene& scene);
 std::vector<std::byte> to_binary(const Scene& scene);
 
 /// All mistakes of a scene made in memory; empty when it is good.
-std::vector<Mistake> check(const Scene& scene);
+std::vector<Mistake> check(const Scene& scene, Untuned untuned = Untuned::kRefused);
 
 /// 64 bits over all that a scene means (not over its bytes): the encoding of its world at tick 0
 /// and of its controls. Unequal digests cannot stay in lockstep.

@@ -1,5 +1,6 @@
 #include <cmath>
 
+#include "scenes/accuracy.hpp"
 #include "scenes/build.hpp"
 #include "scenes/catalogue.hpp"
 
@@ -47,7 +48,7 @@ static void check_script(const ScriptEntry& entry, const std::string& path,
   if (entry.from < 1) mistakes.push_back({path + "/from", "has to be 1 or later"});
 }
 
-std::vector<Mistake> check(const Scene& scene) {
+std::vector<Mistake> check(const Scene& scene, Untuned untuned) {
   std::vector<Mistake> mistakes;
   if (scene.dimension != 2 && scene.dimension != 3) {
     mistakes.push_back({"/dimension", "has to be 2 or 3"});
@@ -57,6 +58,7 @@ std::vector<Mistake> check(const Scene& scene) {
     mistakes.push_back({"/tick_hz", "has to be 1 to 1000"});
     return mistakes;
   }
+  check_accuracy(scene, untuned, mistakes);
   if (scene.seats.size() > kSeatsMax) mistakes.push_back({"/seats", "are 256 at most"});
   for (std::size_t s = 0; s < scene.seats.size(); ++s) {
     const std::string path = "/seats/" + std::to_string(s);

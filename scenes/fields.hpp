@@ -81,7 +81,8 @@ struct Names<solver::ContactBlockRows> {
   static constexpr std::pair<std::string_view, solver::ContactBlockRows> kAll[] = {
       {"none", solver::ContactBlockRows::kNone},
       {"normals", solver::ContactBlockRows::kNormals},
-      {"normal_friction", solver::ContactBlockRows::kNormalFriction}};
+      {"normal_friction", solver::ContactBlockRows::kNormalFriction},
+      {"island", solver::ContactBlockRows::kIsland}};
 };
 template <>
 struct Names<solver::JointSolver> {
@@ -319,6 +320,19 @@ void fields(solver::Limits& l, F&& f) {
 }
 
 template <class F>
+void fields(TunedChoice& c, F&& f) {
+  f("solver_version", c.solver_version);
+  f("tuning", c.tuning);
+}
+
+template <class F>
+void fields(SceneAccuracy& a, F&& f) {
+  f("error_m", a.error_m);
+  f("error_percent", a.error_percent);
+  f("tuned", a.tuned);
+}
+
+template <class F>
 void fields(Scene& s, F&& f) {
   f("name", s.name);
   f("summary", s.summary);
@@ -334,6 +348,7 @@ void fields(Scene& s, F&& f) {
   f("characters", s.characters);
   f("prefabs", s.prefabs);
   f("seats", s.seats);
+  f("accuracy", s.accuracy);
 }
 
 /// A part of a scene that has fields of its own.

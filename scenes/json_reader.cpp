@@ -183,7 +183,7 @@ class ParseGuard {
   bool too_deep_ = false;
 };
 
-Loaded from_json(std::string_view text) {
+Loaded from_json(std::string_view text, Untuned untuned) {
   Loaded loaded;
   if (text.size() > kTextBytesMax) {
     loaded.mistakes.push_back({"", "is larger than 64 MiB"});
@@ -204,7 +204,7 @@ Loaded from_json(std::string_view text) {
   JsonReader reader(json, "", loaded.mistakes);
   reader.read_part(scene);
   drop_zero_signs(scene);
-  if (loaded.mistakes.empty()) loaded.mistakes = check(scene);
+  if (loaded.mistakes.empty()) loaded.mistakes = check(scene, untuned);
   if (loaded.mistakes.empty()) loaded.scene = std::move(scene);
   return loaded;
 }

@@ -198,6 +198,22 @@ struct Seat {
   std::vector<ScriptEntry> script;  ///< Of two entries that speak at once the later one is heard.
 };
 
+/// What `cycloid tune` has chosen for a scene that asks for an accuracy. Of `tuning` the fields of
+/// a method count (is_of_method); the others are stated in the scene's own.
+struct TunedChoice {
+  std::uint32_t solver_version = 0;  ///< Whose measurements it rests on; 0: nothing is chosen.
+  solver::Tuning tuning;
+};
+
+/// How wrong a scene may be, stated instead of a method. docs/tuning.md says what is measured. The
+/// choice is made offline and stored, so that no match depends on a clock.
+struct SceneAccuracy {
+  float error_m = 0.0f;  ///< Of overlap and of gaps in joints, m; 0: not stated.
+  float error_percent =
+      0.0f;  ///< The same as a share of the size of a typical body; 0: not stated.
+  TunedChoice tuned;
+};
+
 struct Scene {
   std::string name;
   std::string summary;
@@ -213,6 +229,7 @@ struct Scene {
   std::vector<SceneCharacter> characters;
   std::vector<SceneBody> prefabs;
   std::vector<Seat> seats;
+  SceneAccuracy accuracy;
 };
 
 }  // namespace cycloid::scenes

@@ -2,6 +2,7 @@
 
 #include <variant>
 
+#include "scenes/accuracy.hpp"
 #include "scenes/build.hpp"
 #include "scenes/characters.hpp"
 #include "scenes/controls.hpp"
@@ -51,16 +52,19 @@ Simulation::~Simulation() = default;
 solver::Result<Simulation> Simulation::create(const Scene& scene) {
   if (const auto error = solver::check_arithmetic(solver::rounds_as_written()); !error.ok())
     return error;
+  if (lacks_choice(scene)) return solver::Error{solver::Code::kInvalid, "accuracy"};
   std::vector<Mistake> mistakes;
   auto running = std::make_unique<Running>();
   bool good = false;
   if (scene.dimension == 2) {
     auto built = build<2>(scene, mistakes);
     good = built != nullptr;
+    if (good) built->world.trim();
     running->built = std::move(built);
   } else if (scene.dimension == 3) {
     auto built = build<3>(scene, mistakes);
     good = built != nullptr;
+    if (good) built->world.trim();
     running->built = std::move(built);
   }
   if (!good) return solver::Error{solver::Code::kInvalid, "scene"};
@@ -85,6 +89,11 @@ float Simulation::tick_s() const {
 
 solver::Error Simulation::set_workers(int workers) {
   return running_->visit([&](auto& built) { return built.world.set_workers(workers); });
+}
+
+void Simulation::use_step_memory(const StepMemories& memories) {
+  if (solver::World<2>* world = planar()) world->use_step_memory(memories.planar);
+  if (solver::World<3>* world = spatial()) world->use_step_memory(memories.spatial);
 }
 
 solver::Error Simulation::set_lanes(int lanes) {

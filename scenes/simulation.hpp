@@ -42,12 +42,20 @@ struct CharacterPose {
   bool grounded = false;
 };
 
+/// Memory in which the steps of many simulations work, whichever their dimension; see
+/// solver::World::use_step_memory.
+struct StepMemories {
+  std::shared_ptr<solver::StepMemory<2>> planar = solver::make_step_memory<2>();
+  std::shared_ptr<solver::StepMemory<3>> spatial = solver::make_step_memory<3>();
+};
+
 /// A running scene: one world of either dimension with the seats' controls. A pure function of the
 /// scene and of the inputs given to `step`, to the bit. What the controls remember between ticks
 /// lies in the world's registers, so digest, save and encode cover it.
 class Simulation {
  public:
-  /// Never fails for a scene that `check` found no mistake in; else says what the first one is.
+  /// Never fails for a scene that `check` found no mistake in; else says what the first one is:
+  /// "accuracy" where the scene asks for one and has no choice of this solver.
   static solver::Result<Simulation> create(const Scene& scene);
   Simulation(Simulation&&) noexcept;
   Simulation& operator=(Simulation&&) noexcept;
@@ -59,6 +67,8 @@ class Simulation {
   float tick_s() const;
   /// 1 to 64 threads; changes no bit.
   solver::Error set_workers(int workers);
+  /// For many simulations that step in turn; changes no bit. @pre no step runs.
+  void use_step_memory(const StepMemories& memories);
   /// 1, 4, 8 or 16 contacts an instruction, else kInvalid "lanes"; changes no bit.
   solver::Error set_lanes(int lanes);
 

@@ -247,6 +247,7 @@ enum class ContactBlockRows : std::uint32_t {
   kNone,
   kNormals,  ///< The normals of a manifold: every case of the linear complementarity problem.
   kNormalFriction,  ///< Normal and tangents of a point: separate, stick or slide.
+  kIsland,  ///< All that push and stick in an island, with its rigid joints; only with kSoft.
 };
 
 /// How the equality rows of joints are solved.

@@ -1,3 +1,6 @@
+#include <string_view>
+#include <type_traits>
+
 #include "solver/tracing/named_words.hpp"
 #include "solver/world.hpp"
 
@@ -24,9 +27,9 @@ static bool same_words(const R& a, const R& b) {
   return same;
 }
 
-template <class R>
-static void compare_arrays(const char* name, const std::vector<R>& a, const std::vector<R>& b,
-                           std::size_t limit, std::vector<Difference>& into) {
+template <class Array>
+static void compare_arrays(const char* name, const Array& a, const Array& b, std::size_t limit,
+                           std::vector<Difference>& into) {
   const std::size_t common = a.size() < b.size() ? a.size() : b.size();
   for (std::size_t i = 0; i < common && into.size() < limit; ++i) {
     if (same_words(a[i], b[i])) continue;
@@ -42,21 +45,13 @@ std::vector<Difference> differences(const WorldState<D>& a, const WorldState<D>&
                                     std::size_t limit) {
   std::vector<Difference> found;
   compare("world", a.header, b.header, limit, found);
-  compare_arrays("material", a.materials, b.materials, limit, found);
-  compare_arrays("body", a.bodies, b.bodies, limit, found);
-  compare_arrays("free body", a.free_bodies, b.free_bodies, limit, found);
-  compare_arrays("shape", a.shapes, b.shapes, limit, found);
-  compare_arrays("free shape", a.free_shapes, b.free_shapes, limit, found);
-  compare_arrays("joint", a.joints, b.joints, limit, found);
-  compare_arrays("free joint", a.free_joints, b.free_joints, limit, found);
-  compare_arrays("contact", a.contacts, b.contacts, limit, found);
-  compare_arrays("register", a.registers, b.registers, limit, found);
-  compare_arrays("particle", a.particles, b.particles, limit, found);
-  compare_arrays("free particle", a.free_particles, b.free_particles, limit, found);
-  compare_arrays("link", a.links, b.links, limit, found);
-  compare_arrays("free link", a.free_links, b.free_links, limit, found);
-  compare_arrays("pin", a.pins, b.pins, limit, found);
-  compare_arrays("free pin", a.free_pins, b.free_pins, limit, found);
+  visit_arrays(a, [&](const char* name, const auto& of_a) {
+    visit_arrays(b, [&](const char* other, const auto& of_b) {
+      if constexpr (std::is_same_v<decltype(of_a), decltype(of_b)>) {
+        if (std::string_view(name) == other) compare_arrays(name, of_a, of_b, limit, found);
+      }
+    });
+  });
   return found;
 }
 

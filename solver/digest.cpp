@@ -12,7 +12,7 @@ std::uint64_t digest_state(const WorldState<D>& state) {
   visit_words(state.header, write);
   visit_arrays(state, [&](const char*, const auto& array) {
     write(static_cast<std::uint32_t>(array.size()));
-    for (const auto& element : array) visit_words(element, write);
+    write.records(std::span(array));
   });
   return write.digest();
 }

@@ -1,5 +1,6 @@
 #include "solver/bytes.hpp"
 #include "solver/encoding.hpp"
+#include "solver/record_bytes.hpp"
 #include "solver/validate.hpp"
 #include "solver/visit.hpp"
 #include "solver/world.hpp"
@@ -21,6 +22,15 @@ std::size_t encoded_bytes(const WorldState<D>& state) {
 }
 
 template <int D>
+std::size_t saved_bytes(const WorldState<D>& state) {
+  std::size_t bytes = sizeof state.header;
+  visit_arrays(state, [&](const char*, const auto& array) {
+    if constexpr (requires { array.capacity(); }) bytes += array.size() * sizeof array[0];
+  });
+  return bytes;
+}
+
+template <int D>
 void encode_state(const WorldState<D>& state, std::vector<std::byte>& into) {
   into.resize(encoded_bytes(state));
   std::byte* to = into.data();
@@ -34,7 +44,7 @@ void encode_state(const WorldState<D>& state, std::vector<std::byte>& into) {
   visit_words(state.header, write);
   visit_arrays(state, [&](const char*, const auto& array) {
     write(static_cast<std::uint32_t>(array.size()));
-    for (const auto& element : array) visit_words(element, write);
+    to = write_records(std::span(array), to);
   });
 }
 
@@ -65,7 +75,7 @@ bool read_state(std::span<const std::byte> bytes, WorldState<D>& state) {
     if (count > read.bytes.size() / visited_bytes<Element>()) read.failed = true;
     if (read.failed) return;
     array.resize(count);
-    for (Element& element : array) visit_words(element, read);
+    read_records(read, std::span(array));
   });
   return !read.failed && read.bytes.empty();
 }
@@ -86,6 +96,8 @@ Error World<D>::decode(std::span<const std::byte> bytes) {
 
 template std::size_t encoded_bytes(const WorldState<2>&);
 template std::size_t encoded_bytes(const WorldState<3>&);
+template std::size_t saved_bytes(const WorldState<2>&);
+template std::size_t saved_bytes(const WorldState<3>&);
 template void encode_state(const WorldState<2>&, std::vector<std::byte>&);
 template void encode_state(const WorldState<3>&, std::vector<std::byte>&);
 template bool read_state(std::span<const std::byte>, WorldState<2>&);

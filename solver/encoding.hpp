@@ -18,6 +18,11 @@ namespace cycloid::solver {
 template <int D>
 std::size_t encoded_bytes(const WorldState<D>& state);
 
+/// How many bytes a save copies. Shapes and links are not among them: copies of a state share
+/// them until one is edited.
+template <int D>
+std::size_t saved_bytes(const WorldState<D>& state);
+
 /// The exact state as little-endian bytes, in place of what is in `into`.
 template <int D>
 void encode_state(const WorldState<D>& state, std::vector<std::byte>& into);

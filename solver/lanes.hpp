@@ -6,6 +6,14 @@
 
 namespace cycloid::solver {
 
+/// The width of the kernels that are compiled for AVX2: 8 lanes under a name of their own, so that
+/// no function compiled with those instructions has the name of one that every processor may run.
+inline constexpr int kAvx2Lanes = 256 + 8;
+
+/// How many lanes a width has.
+template <int W>
+inline constexpr int kLaneCount = W % 256;
+
 /// The vector of W floats and of W masks. One explicit row per width, because GCC 12 can neither
 /// subscript nor overload on a vector type whose size depends on a template parameter.
 template <int W>
@@ -31,6 +39,9 @@ struct RawLanes<16> {
   typedef int Mask __attribute__((vector_size(64)));
 };
 
+template <>
+struct RawLanes<kAvx2Lanes> : RawLanes<8> {};
+
 /// W independent floats: the arithmetic of every wide kernel. `Lanes<1>` is the scalar path, so a
 /// kernel is written once.
 ///
@@ -38,8 +49,11 @@ struct RawLanes<16> {
 /// target's vector width. `min` and `max` are selects because hardware min and max disagree on
 /// signed zero and NaN. There is no fused multiply-add, reciprocal or reciprocal square root:
 /// targets round those differently. docs/determinism.md has the measurements.
+///
+/// Aligned by hand: GCC aligns a vector to no more than the unit's own instruction set asks for,
+/// and units of several sets work on the same blocks.
 template <int W>
-struct Lanes {
+struct alignas(4 * kLaneCount<W>) Lanes {
   using Raw = typename RawLanes<W>::Float;
   using Mask = typename RawLanes<W>::Mask;
   Raw raw;
@@ -69,7 +83,7 @@ struct Lanes {
   friend Lanes min(Lanes a, Lanes b) { return Lanes(a.raw < b.raw ? a.raw : b.raw); }
   friend Lanes select(Mask mask, Lanes yes, Lanes no) { return Lanes(mask ? yes.raw : no.raw); }
   friend Lanes sqrt(Lanes a) {
-    for (int lane = 0; lane < W; ++lane) a.raw[lane] = __builtin_sqrtf(a.raw[lane]);
+    for (int lane = 0; lane < kLaneCount<W>; ++lane) a.raw[lane] = __builtin_sqrtf(a.raw[lane]);
     return a;
   }
 };
@@ -78,7 +92,7 @@ struct Lanes {
 /// answers have no order.
 template <int W>
 bool any_above_zero(Lanes<W> a) {
-  float lanes[W];
+  float lanes[kLaneCount<W>];
   a.store(lanes);
   for (const float lane : lanes)
     if (lane > 0.0f) return true;
@@ -86,7 +100,7 @@ bool any_above_zero(Lanes<W> a) {
 }
 template <int W>
 bool all_above_zero(Lanes<W> a) {
-  float lanes[W];
+  float lanes[kLaneCount<W>];
   a.store(lanes);
   for (const float lane : lanes)
     if (!(lane > 0.0f)) return false;

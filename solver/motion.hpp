@@ -17,6 +17,22 @@ struct alignas(Dim<D>::kMotionFloats * 4) Motion {
 
 static_assert(sizeof(Motion<2>) == 32 && sizeof(Motion<3>) == 64);
 
+template <int D>
+inline constexpr int kMotionComponents = 2 * D + Dim<D>::kSpin + Dim<D>::kRotation;
+/// Groups of four floats that hold velocity and spin, and the first components of the position.
+template <int D>
+inline constexpr int kVelocityQuads = (D + Dim<D>::kSpin + 3) / 4;
+template <int D>
+inline constexpr int kPoseQuads = (kMotionComponents<D> + 3) / 4;
+
+/// How a substep of h changes the floats of a motion's velocity quads: x' = factor (x + h rate).
+/// The factor 1 and the rate -0 leave a float as it is, to the bit.
+template <int D>
+struct alignas(16) Acceleration {
+  float factor[4 * kVelocityQuads<D>];
+  float rate[4 * kVelocityQuads<D>];
+};
+
 /// What the sweeps need of a body besides its motion, constant during a tick.
 template <int D>
 struct BodyMass {

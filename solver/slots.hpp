@@ -3,12 +3,14 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/shared_array.hpp"
+
 namespace cycloid::solver {
 
 /// The slot that the next record takes: the last freed, else a new one. Fails at the limit.
-template <class Record>
-bool has_room(const std::vector<Record>& slots, const std::vector<std::uint32_t>& free,
-              std::size_t wanted, std::uint32_t limit) {
+template <class Slots>
+bool has_room(const Slots& slots, const std::vector<std::uint32_t>& free, std::size_t wanted,
+              std::uint32_t limit) {
   return slots.size() - free.size() + wanted <= limit;
 }
 
@@ -30,6 +32,11 @@ void free_slot(std::uint32_t index, std::vector<Record>& slots, std::vector<std:
   slots[index] = Record{};
   slots[index].generation = generation;
   free.push_back(index);
+}
+
+template <class Record>
+void free_slot(std::uint32_t index, SharedArray<Record>& slots, std::vector<std::uint32_t>& free) {
+  slots.edit([&](std::vector<Record>& own) { free_slot(index, own, free); });
 }
 
 }  // namespace cycloid::solver

@@ -7,6 +7,7 @@
 
 #include "solver/definitions.hpp"
 #include "solver/particles/particle.hpp"
+#include "solver/shared_array.hpp"
 #include "solver/solids/polyhedron.hpp"
 
 namespace cycloid::solver {
@@ -68,18 +69,11 @@ struct Body {
 /// sleeping body (a force, a velocity) wakes it.
 template <int D>
 bool is_active(const Body<D>& body) {
-  const bool pushed = dot(body.velocity, body.velocity) > 0.0f ||
-                      dot(body.spin, body.spin) > 0.0f || dot(body.force, body.force) > 0.0f ||
-                      dot(body.torque, body.torque) > 0.0f;
-  switch (body.kind) {
-    case BodyKind::kDynamic:
-    case BodyKind::kParticle:
-      return body.asleep == 0 || pushed;
-    case BodyKind::kKinematic:
-      return dot(body.velocity, body.velocity) > 0.0f || dot(body.spin, body.spin) > 0.0f;
-    default:
-      return false;
-  }
+  const bool responds = body.kind == BodyKind::kDynamic || body.kind == BodyKind::kParticle;
+  if (!responds && body.kind != BodyKind::kKinematic) return false;
+  if (responds && body.asleep == 0) return true;
+  if (dot(body.velocity, body.velocity) > 0.0f || dot(body.spin, body.spin) > 0.0f) return true;
+  return responds && (dot(body.force, body.force) > 0.0f || dot(body.torque, body.torque) > 0.0f);
 }
 
 /// What a shape looks like, in the frame of the centre of mass.
@@ -192,14 +186,15 @@ struct WorldHeader {
 };
 
 /// All that the next step depends on. Slots that are free keep only their generation; the free
-/// lists are stacks, so the next id given out is part of the state too.
+/// lists are stacks, so the next id given out is part of the state too. What no tick changes is
+/// shared with the copies of a state, so that a save copies what moves.
 template <int D>
 struct WorldState {
   WorldHeader<D> header;
   std::vector<Material> materials;
   std::vector<Body<D>> bodies;
   std::vector<std::uint32_t> free_bodies;
-  std::vector<Shape<D>> shapes;
+  SharedArray<Shape<D>> shapes;
   std::vector<std::uint32_t> free_shapes;
   Polyhedra polyhedra;
   std::vector<Joint<D>> joints;
@@ -208,7 +203,7 @@ struct WorldState {
   std::vector<std::uint32_t> registers;
   std::vector<Particle<D>> particles;
   std::vector<std::uint32_t> free_particles;
-  std::vector<Link> links;
+  SharedArray<Link> links;
   std::vector<std::uint32_t> free_links;
   std::vector<Pin<D>> pins;
   std::vector<std::uint32_t> free_pins;

@@ -6,8 +6,10 @@
 
 #include "solver/collision/bounds_tree.hpp"
 #include "solver/collision/manifold.hpp"
+#include "solver/collision/pair_cache.hpp"
 #include "solver/constraints/contact.hpp"
 #include "solver/constraints/joint_row.hpp"
+#include "solver/direct/island_solver.hpp"
 #include "solver/direct/tree_solver.hpp"
 #include "solver/motion.hpp"
 #include "solver/particles/move_particles.hpp"
@@ -17,13 +19,6 @@
 namespace cycloid::solver {
 
 struct StepTrace;
-
-/// Two shapes whose boxes overlap, lower slot first.
-struct ShapePair {
-  std::uint32_t shape_a;
-  std::uint32_t shape_b;
-  std::uint64_t key() const { return (std::uint64_t{shape_a} << 32) | shape_b; }
-};
 
 /// Constraints by colour: no two of one colour share a body that moves. `order` lists colour after
 /// colour; the last range holds what fitted none, to be solved one after the other.
@@ -38,6 +33,8 @@ struct Coloring {
 template <int D, int W>
 struct ContactBlocks {
   std::vector<ContactBlock<D, W>> blocks;
+  bool follows = false;  ///< Some block does.
+  bool bounces = false;
   std::vector<Range> colors;
   Range overflow;
 };
@@ -58,26 +55,34 @@ RowsFunction<D> find_rows_function(const std::vector<UserRows<D>>& registered,
   return nullptr;
 }
 
-/// Everything a step computes and throws away: nothing in here outlives a tick, so nothing in here
-/// is state. Kept between ticks only for its memory, and the tree of what never moves, which is a
-/// function of the state alone.
+/// What a world keeps from one step to the next beside its state: what it was told, and caches that
+/// are functions of the state alone and change no result.
 template <int D>
-struct StepScratch {
-  std::vector<typename BoundsTree<D>::Leaf> leaves;
-  BoundsTree<D> tree;                    ///< Of the shapes of bodies that can move.
-  BoundsTree<D> static_tree;             ///< Of those that cannot; it may be a whole landscape.
+struct KeptByWorld {
+  BoundsTree<D> static_tree;             ///< Of the shapes that cannot move: maybe a landscape.
   std::vector<std::uint32_t> unbounded;  ///< Half-spaces.
-  /// Whether `static_tree` and `unbounded` are those of the state. Whoever makes, moves or removes
-  /// a static body, or puts another state in place, sets it back.
-  bool statics_are_listed = false;
-  std::vector<std::uint64_t> jointed_bodies;  ///< Sorted pairs that do not collide.
-  std::vector<std::vector<ShapePair>> found;  ///< By chunk of leaves.
-  std::vector<ShapePair> pairs;               ///< Sorted by key.
-  std::vector<Manifold<D>> pair_manifolds;    ///< Of each pair; empty where the shapes are apart.
+  PairCache<D> pair_cache;  ///< Whoever changes a pose, filter, shape or joint makes it forget.
+  std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
+  StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
+};
+
+/// Everything a step computes and throws away: nothing in here that shows outlives a tick, so
+/// nothing in here is state. Lent for a step: what is left in it may be another world's, but for
+/// what the world keeps, which is put in for that time (step_memory.hpp).
+template <int D>
+struct StepScratch : KeptByWorld<D> {
+  std::vector<typename BoundsTree<D>::Leaf> leaves;
+  std::vector<ShapePair> pairs;             ///< Sorted by key.
+  std::vector<Manifold<D>> pair_manifolds;  ///< Of a batch of pairs; empty where shapes are apart.
 
   std::vector<Contact<D>> contacts;    ///< Becomes the state's when the step commits.
   std::vector<Manifold<D>> manifolds;  ///< Of each contact.
+  std::vector<std::uint32_t> began;    ///< Contacts that touch and did not.
+  std::vector<std::uint32_t> ended;    ///< Contacts of the state that no longer touch.
+  std::vector<std::uint8_t> active;    ///< By body: it took part by itself as the tick began.
+  std::uint32_t bodies_asleep = 0;     ///< Those that did not, and could move.
 
+  bool islands_are_known = false;        ///< Only where somebody wakes, or is to fall asleep.
   std::vector<std::uint32_t> islands;    ///< Parent of each body; the root is its lowest slot.
   std::vector<std::uint8_t> kept_awake;  ///< By body: something drives it.
   std::vector<std::uint8_t> island_flags;
@@ -97,15 +102,17 @@ struct StepScratch {
   std::vector<JointRow<D>> saved_rows;
   std::vector<JointBlock<D>> tree_blocks;  ///< Of joint_rows, for the tree solver.
   TreeSolver<D> trees;
+  IslandSolver<D> islands_solved;
   std::vector<float> tree_wanted;
   std::vector<float> tree_impulses;
   std::vector<float> stops;  ///< By body: the fraction of the tick at which it meets something.
   ParticleScratch<D> particles;
   WorldState<D> before;                ///< Of worlds with particles, to undo a tick that faults.
-  std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
-  std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>>
-      contact_blocks;          ///< Only that of the chosen width is filled.
-  StepTrace* trace = nullptr;  ///< Of World::step_traced, while it runs.
+  std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>,
+             ContactBlocks<D, kAvx2Lanes>>
+      contact_blocks;                          ///< Only that of the chosen width is filled.
+  std::vector<Acceleration<D>> accelerations;  ///< By body.
+  std::uint32_t poses = 0;  ///< Grows whenever positions have moved in this tick.
 };
 
 }  // namespace cycloid::solver

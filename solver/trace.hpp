@@ -71,6 +71,11 @@ struct TracedPhase {
 /// What every phase of a step has left, in the order of the step. Like the state it depends neither
 /// on lanes nor on workers: contacts and joints are listed by slot, not by block and colour.
 struct StepTrace {
+  /// Where it is set, it is called with `listener_user` after each phase, and nothing is written
+  /// down: a host reads its clock there. The solver itself knows none.
+  void (*listener)(void* user, const TracePoint& at) = nullptr;
+  void* listener_user = nullptr;
+
   bool wants_objects = false;  ///< Fill in `objects` of each phase.
   std::string wants_fields;    ///< Fill in `fields` of the object of this name.
   std::vector<TracedPhase> phases;

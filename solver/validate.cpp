@@ -15,7 +15,9 @@ Error validate(const Tuning& t) {
     return invalid("substeps");
   if (t.stabilisation > Stabilisation::kXpbd) return invalid("stabilisation");
   if (t.order > Order::kReverse) return invalid("order");
-  if (t.contact_block > ContactBlockRows::kNormalFriction) return invalid("contact_block");
+  if (t.contact_block > ContactBlockRows::kIsland) return invalid("contact_block");
+  if (t.contact_block == ContactBlockRows::kIsland && t.stabilisation != Stabilisation::kSoft)
+    return invalid("contact_block");
   if (t.joint_solver > JointSolver::kDirect) return invalid("joint_solver");
   if (!within(t.warm_starting, 0.0f, 1.0f)) return invalid("warm_starting");
   if (!within(t.over_relaxation, 0.01f, 1.99f)) return invalid("over_relaxation");

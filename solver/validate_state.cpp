@@ -21,9 +21,8 @@ static bool is_finite(const R& record) {
 }
 
 /// A free list names each free slot once and nothing else.
-template <class R, class Kind>
-static bool is_free_list(const std::vector<std::uint32_t>& list, const std::vector<R>& slots,
-                         Kind free) {
+template <class Slots, class Kind>
+static bool is_free_list(const std::vector<std::uint32_t>& list, const Slots& slots, Kind free) {
   std::vector<bool> listed(slots.size(), false);
   for (const std::uint32_t index : list) {
     if (index >= slots.size() || listed[index] || slots[index].kind != free) return false;

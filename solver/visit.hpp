@@ -266,13 +266,24 @@ constexpr void visit(R& record, F&& f) {
   visit_fields(record, f, static_cast<const std::remove_const_t<R>*>(nullptr));
 }
 
-/// The arrays of a state in canonical order: f(object name, array).
+/// Calls f(name, array), where the array of a state that is not const becomes its own.
+template <class T, class F>
+void visit_shared(const SharedArray<T>& shared, const char* name, F&& f) {
+  f(name, shared);
+}
+template <class T, class F>
+void visit_shared(SharedArray<T>& shared, const char* name, F&& f) {
+  shared.edit([&](std::vector<T>& array) { f(name, array); });
+}
+
+/// The arrays of a state in canonical order: f(object name, array). An array that is to be changed
+/// is a vector, good until f returns.
 template <class S, class F>
 void visit_arrays(S& state, F&& f) {
   f("material", state.materials);
   f("body", state.bodies);
   f("free body", state.free_bodies);
-  f("shape", state.shapes);
+  visit_shared(state.shapes, "shape", f);
   f("free shape", state.free_shapes);
   f("polyhedron", state.polyhedra.records);
   f("polyhedron vertex", state.polyhedra.vertices);
@@ -284,7 +295,7 @@ void visit_arrays(S& state, F&& f) {
   f("register", state.registers);
   f("particle", state.particles);
   f("free particle", state.free_particles);
-  f("link", state.links);
+  visit_shared(state.links, "link", f);
   f("free link", state.free_links);
   f("pin", state.pins);
   f("free pin", state.free_pins);

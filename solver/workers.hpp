@@ -1,8 +1,10 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <utility>
 
 namespace cycloid::solver {
 
@@ -24,6 +26,54 @@ class Tally {
  private:
   std::uint64_t limit_;
   std::atomic<std::uint64_t> sum_{0};
+};
+
+/// How many hold a thing, whichever threads take and drop it. Begins with one.
+class OwnerCount {
+ public:
+  void take() { owners_.fetch_add(1, std::memory_order_relaxed); }
+  /// Whether the one that drops it was the last; then it may end the thing.
+  bool drop() { return owners_.fetch_sub(1, std::memory_order_acq_rel) == 1; }
+  /// Whether who asks holds it alone; then what others did with it is done.
+  bool is_one() const { return owners_.load(std::memory_order_acquire) == 1; }
+
+ private:
+  std::atomic<std::uint32_t> owners_{1};
+};
+
+/// Things that are lent for a while, from any thread, and kept for whoever comes next: who borrows
+/// gets one that somebody gave back, whatever is left in it, or a new one.
+template <class T>
+class Depot {
+ public:
+  Depot() = default;
+  Depot(const Depot&) = delete;
+  Depot& operator=(const Depot&) = delete;
+  ~Depot() {
+    for (std::atomic<T*>& place : places_) delete place.load();
+  }
+
+  std::unique_ptr<T> borrow() {
+    for (std::atomic<T*>& place : places_)
+      if (place.load(std::memory_order_relaxed) != nullptr)
+        if (T* kept = place.exchange(nullptr, std::memory_order_acquire); kept != nullptr)
+          return std::unique_ptr<T>(kept);
+    return std::make_unique<T>();
+  }
+  /// What finds no place ends.
+  void give_back(std::unique_ptr<T> thing) {
+    for (std::atomic<T*>& place : places_) {
+      T* none = nullptr;
+      if (place.compare_exchange_strong(none, thing.get(), std::memory_order_release,
+                                        std::memory_order_relaxed)) {
+        thing.release();
+        return;
+      }
+    }
+  }
+
+ private:
+  std::array<std::atomic<T*>, 64> places_{};  ///< As many as there may be workers.
 };
 
 /// A fixed pool that runs ranges. The only thread-aware code of the solver.

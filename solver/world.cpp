@@ -1,8 +1,11 @@
 #include "solver/world.hpp"
 
+#include <cstring>
+
 #include "solver/floating_point_mode.hpp"
-#include "solver/step_scratch.hpp"
+#include "solver/step_memory.hpp"
 #include "solver/validate.hpp"
+#include "solver/visit.hpp"
 #include "solver/workers.hpp"
 
 namespace cycloid::solver {
@@ -29,8 +32,17 @@ const char* fault_field_name(std::uint64_t field) {
 }
 
 template <int D>
+std::shared_ptr<StepMemory<D>> make_step_memory() {
+  return std::make_shared<StepMemory<D>>();
+}
+template std::shared_ptr<StepMemory<2>> make_step_memory();
+template std::shared_ptr<StepMemory<3>> make_step_memory();
+
+template <int D>
 World<D>::World()
-    : workers_(std::make_unique<Workers>(1)), scratch_(std::make_unique<StepScratch<D>>()) {}
+    : workers_(std::make_unique<Workers>(1)),
+      kept_(std::make_unique<KeptByWorld<D>>()),
+      step_memory_(make_step_memory<D>()) {}
 template <int D>
 World<D>::World(World&&) noexcept = default;
 template <int D>
@@ -61,7 +73,8 @@ Error World<D>::set_workers(int workers) {
 
 template <int D>
 Error World<D>::set_lanes(int lanes) {
-  if (lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16) return {Code::kInvalid, "lanes"};
+  if (lanes != 0 && lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16)
+    return {Code::kInvalid, "lanes"};
   lanes_ = lanes;
   return {};
 }
@@ -73,9 +86,44 @@ std::optional<Fault> World<D>::fault() const {
 }
 
 template <int D>
+void World<D>::trim() {
+  // Shared arrays apart: to visit them as arrays of its own would copy what others hold, too.
+  SharedArray<Shape<D>> shapes = std::move(state_.shapes);
+  SharedArray<Link> links = std::move(state_.links);
+  visit_arrays(state_, [](const char*, auto& array) { array.shrink_to_fit(); });
+  shapes.shrink_to_fit();
+  links.shrink_to_fit();
+  state_.shapes = std::move(shapes);
+  state_.links = std::move(links);
+}
+
+template <class T>
+static bool same_bits(const T& a, const T& b) {
+  return std::memcmp(&a, &b, sizeof a) == 0;
+}
+
+/// Whether both states have the same static shapes in the same places. A landscape costs many times
+/// what a rollback takes, and hardly ever changes.
+template <int D>
+static bool statics_are_same(const WorldState<D>& a, const WorldState<D>& b) {
+  if (!a.shapes.is_same_as(b.shapes) || a.bodies.size() != b.bodies.size()) return false;
+  for (std::size_t i = 0; i < a.bodies.size(); ++i) {
+    const Body<D>& body_a = a.bodies[i];
+    const Body<D>& body_b = b.bodies[i];
+    if (body_a.kind != BodyKind::kStatic && body_b.kind != BodyKind::kStatic) continue;
+    if (body_a.kind != body_b.kind || !same_bits(body_a.position, body_b.position) ||
+        !same_bits(body_a.rotation, body_b.rotation))
+      return false;
+  }
+  return true;
+}
+
+template <int D>
 void World<D>::restore(const WorldState<D>& from) {
+  const bool statics_stay = kept_->pair_cache.statics_are_known && statics_are_same(state_, from);
   state_ = from;
-  scratch_->statics_are_listed = false;
+  kept_->pair_cache.forget_all();
+  kept_->pair_cache.statics_are_known = statics_stay;
   events_.clear();
   ended_.clear();
   statistics_ = {};

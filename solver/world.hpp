@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "solver/arithmetic.hpp"
@@ -17,7 +18,9 @@ namespace cycloid::solver {
 
 class Workers;
 template <int D>
-struct StepScratch;
+struct KeptByWorld;
+template <int D>
+struct StepMemory;
 struct StepTrace;
 template <int D>
 struct JointFrame;
@@ -47,7 +50,8 @@ struct Statistics {
   std::uint32_t turning_rows_per_sweep = 0;  ///< Contact rows with an angular part.
   std::uint32_t direct_rows = 0;             ///< Joint rows that the tree solver solves at once.
   std::uint32_t asleep = 0;                  ///< Bodies that were left alone.
-  std::uint64_t rows = 0;                    ///< Rows solved in the step, all sweeps together.
+  std::uint64_t rows = 0;  ///< Rows solved in the step, all sweeps together; with the products
+                           ///< of blocks where islands are solved at once.
 };
 
 /// A body as a user sees it: the pose of its frame, not of its centre of mass.
@@ -86,7 +90,14 @@ class World {
   /// How many threads take part in a step, this one included: 1 to 64. Changes no bit. New threads
   /// inherit the mode of this one: kInvalid "floating_point_mode" as for `create`.
   Error set_workers(int workers);
-  /// How many contacts one instruction solves: 1, 4, 8 or 16. Changes no bit.
+  /// Lets steps work in this memory, which many worlds may share, on any threads: each step takes
+  /// a piece of it for its time, or makes one. So idle worlds have none. Changes no bit.
+  /// @pre `memory` is of make_step_memory, and no step runs.
+  void use_step_memory(std::shared_ptr<StepMemory<D>> memory) { step_memory_ = std::move(memory); }
+  /// Gives back the memory that the state does not fill. Changes no bit.
+  void trim();
+  /// How many contacts one instruction solves: 1, 4, 8 or 16; 0, as at first, leaves the choice to
+  /// each step, by the contacts that there are and what the processor has. Changes no bit.
   Error set_lanes(int lanes);
 
   /// Advances one tick: `tuning.substeps` substeps of tick_s / substeps.
@@ -197,10 +208,16 @@ class World {
   std::vector<ContactEvent> events_;
   std::vector<ContactEvent> ended_;  ///< By destroy_body since the last step; reported by the next.
   Statistics statistics_;
-  int lanes_ = 4;
+  int lanes_ = 0;
   std::unique_ptr<Workers> workers_;
-  std::unique_ptr<StepScratch<D>> scratch_;
+  std::unique_ptr<KeptByWorld<D>> kept_;
+  std::shared_ptr<StepMemory<D>> step_memory_;
 };
+
+/// What `use_step_memory` takes. It grows to what the largest world on it needs, once for each
+/// thread that steps at the same time, and goes with the last of them.
+template <int D>
+std::shared_ptr<StepMemory<D>> make_step_memory();
 
 /// One value that differs between two states.
 struct Difference {

@@ -3,11 +3,12 @@
 #include "solver/constraints/joints/unwrap.hpp"
 #include "solver/constraints/rows.hpp"
 #include "solver/events.hpp"
+#include "solver/forget_pairs.hpp"
 #include "solver/mass.hpp"
 #include "solver/shapes.hpp"
 #include "solver/slots.hpp"
 #include "solver/solids/polyhedra.hpp"
-#include "solver/step_scratch.hpp"
+#include "solver/step_memory.hpp"
 #include "solver/validate.hpp"
 #include "solver/wake.hpp"
 #include "solver/workers.hpp"
@@ -74,6 +75,24 @@ static void set_size(const std::vector<Shape<D>>& shapes, Body<D>& body) {
   }
 }
 
+/// Slots are taken in the order of the shapes and linked back to front.
+template <int D>
+static void attach_shapes(const std::vector<Shape<D>>& shapes, std::uint32_t index,
+                          std::vector<std::uint32_t>& free, std::vector<Shape<D>>& all,
+                          Body<D>& body) {
+  std::vector<std::uint32_t> slots;
+  for (std::size_t i = 0; i < shapes.size(); ++i) slots.push_back(take_slot(all, free));
+  for (std::size_t i = shapes.size(); i-- > 0;) {
+    Shape<D>& shape = all[slots[i]];
+    shape = shapes[i];
+    shift_shape(body.local_center, shape);
+    shape.body = index;
+    shape.ordinal = static_cast<std::uint32_t>(i);
+    shape.next = body.first_shape;
+    body.first_shape = slots[i];
+  }
+}
+
 template <int D>
 Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const ShapeDef<D>> defs) {
   if (const Error error = validate(def); !error.ok()) return error;
@@ -98,26 +117,15 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
   const std::uint32_t index = take_slot(state_.bodies, state_.free_bodies);
   body.generation = state_.bodies[index].generation;
   body.position = def.position + rotate(body.rotation, body.local_center);
-  // Slots are taken in the order of the shapes and linked back to front.
-  std::vector<std::uint32_t> slots;
-  for (Shape<D>& shape : shapes) {
-    slots.push_back(take_slot(state_.shapes, state_.free_shapes));
-    adopt_hull(hulls, state_.polyhedra, shape);
-  }
-  for (std::size_t i = shapes.size(); i-- > 0;) {
-    Shape<D>& shape = state_.shapes[slots[i]];
-    shape = shapes[i];
-    shift_shape(body.local_center, shape);
-    shape.body = index;
-    shape.ordinal = static_cast<std::uint32_t>(i);
-    shape.next = body.first_shape;
-    body.first_shape = slots[i];
-  }
-  set_size(state_.shapes, body);
+  for (Shape<D>& shape : shapes) adopt_hull(hulls, state_.polyhedra, shape);
+  state_.shapes.edit([&](std::vector<Shape<D>>& all) {
+    attach_shapes(shapes, index, state_.free_shapes, all, body);
+    set_size(all, body);
+  });
   state_.bodies[index] = body;
   // A static body may be put where others sleep, and neither would look for the other.
   if (body.inverse_mass == 0.0f) wake_all(state_);
-  if (body.kind == BodyKind::kStatic) scratch_->statics_are_listed = false;
+  note_change(state_, body, kept_->pair_cache);
   return BodyId{index, body.generation};
 }
 
@@ -144,14 +152,16 @@ Error World<D>::destroy_body(BodyId id) {
     if (contact.touching != 0) ended_.push_back(contact_event(state_, contact, false));
   }
   std::erase_if(state_.contacts, is_of_body);
-  if (state_.bodies[id.index].kind == BodyKind::kStatic) scratch_->statics_are_listed = false;
-  for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone;) {
-    const std::uint32_t next = state_.shapes[s].next;
-    abandon_hull(state_.shapes[s], state_.polyhedra);
-    state_.shapes[s] = Shape<D>{};
-    state_.free_shapes.push_back(s);
-    s = next;
-  }
+  note_change(state_, state_.bodies[id.index], kept_->pair_cache);
+  state_.shapes.edit([&](std::vector<Shape<D>>& shapes) {
+    for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone;) {
+      const std::uint32_t next = shapes[s].next;
+      abandon_hull(shapes[s], state_.polyhedra);
+      shapes[s] = Shape<D>{};
+      state_.free_shapes.push_back(s);
+      s = next;
+    }
+  });
   state_.bodies[id.index] = Body<D>{};
   state_.bodies[id.index].generation = id.generation + 1;
   state_.free_bodies.push_back(id.index);
@@ -238,7 +248,7 @@ Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
   const Body<D>& b = state_.bodies[def.body_b.index];
   if (a.inverse_mass == 0.0f && b.inverse_mass == 0.0f) return Error{Code::kInvalid, "body_b"};
   if (def.kind == JointKind::kUser &&
-      find_rows_function<D>(scratch_->user_rows, def.user_kind) == nullptr)
+      find_rows_function<D>(kept_->user_rows, def.user_kind) == nullptr)
     return Error{Code::kInvalid, "user_kind"};
   if (def.kind == JointKind::kCurve && def.curve == CurveKind::kPolyline &&
       !has_outline(state_, def.body_a.index))
@@ -251,6 +261,7 @@ Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
   joint.generation = state_.joints[index].generation;
   take_rest_values(state_, joint);
   state_.joints[index] = joint;
+  note_joint(state_, joint, kept_->pair_cache);
   wake_both(state_, joint);
   return JointId{index, joint.generation};
 }
@@ -258,7 +269,9 @@ Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
 template <int D>
 Error World<D>::destroy_joint(JointId id) {
   if (const Error error = check(id); !error.ok()) return error;
-  wake_both(state_, state_.joints[id.index]);
+  const Joint<D>& joint = state_.joints[id.index];
+  note_joint(state_, joint, kept_->pair_cache);
+  wake_both(state_, joint);
   state_.joints[id.index] = Joint<D>{};
   state_.joints[id.index].generation = id.generation + 1;
   state_.free_joints.push_back(id.index);
@@ -267,12 +280,12 @@ Error World<D>::destroy_joint(JointId id) {
 
 template <int D>
 void World<D>::register_constraint(std::uint32_t user_kind, RowsFunction<D> function) {
-  for (UserRows<D>& rows : scratch_->user_rows)
+  for (UserRows<D>& rows : kept_->user_rows)
     if (rows.user_kind == user_kind) {
       rows.function = function;
       return;
     }
-  scratch_->user_rows.push_back({user_kind, function});
+  kept_->user_rows.push_back({user_kind, function});
 }
 
 template void World<2>::register_constraint(std::uint32_t, RowsFunction<2>);

@@ -10,8 +10,8 @@ static constexpr Error invalid(const char* field) {
   return {Code::kInvalid, field};
 }
 
-template <class Record, class Id>
-static bool lives(const std::vector<Record>& slots, const Id& id) {
+template <class Slots, class Id>
+static bool lives(const Slots& slots, const Id& id) {
   return id.index < slots.size() && slots[id.index].kind != 0 &&
          slots[id.index].generation == id.generation;
 }
@@ -60,7 +60,8 @@ Result<LinkId> World<D>::create_link(const LinkDef& def) {
   link.particle_b = def.particle_b.index;
   link.length = def.length;
   link.compliance = def.compliance;
-  return place<LinkId>(link, state_.links, state_.free_links);
+  return state_.links.edit(
+      [&](std::vector<Link>& links) { return place<LinkId>(link, links, state_.free_links); });
 }
 
 template <int D>

@@ -1,5 +1,6 @@
 #include "solver/constraints/joints/swing_twist.hpp"
-#include "solver/step_scratch.hpp"
+#include "solver/forget_pairs.hpp"
+#include "solver/step_memory.hpp"
 #include "solver/trig.hpp"
 #include "solver/validate.hpp"
 #include "solver/wake.hpp"
@@ -76,7 +77,7 @@ Error World<D>::set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& r
   Body<D>& body = state_.bodies[id.index];
   body.rotation = normalized_or(rotation, rotation);
   body.position = position + rotate(body.rotation, body.local_center);
-  if (body.kind == BodyKind::kStatic) scratch_->statics_are_listed = false;
+  note_move(body, kept_->pair_cache);
   // Nobody looks for the pairs of two bodies that rest, so what may touch it now has to look.
   wake_all(state_);
   return {};
@@ -138,7 +139,8 @@ Error World<D>::set_filter(BodyId id, std::uint32_t shape, const Filter& filter)
   if (const Error error = check(id); !error.ok()) return error;
   for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone; s = state_.shapes[s].next)
     if (state_.shapes[s].ordinal == shape) {
-      state_.shapes[s].filter = filter;
+      state_.shapes.edit([&](std::vector<Shape<D>>& shapes) { shapes[s].filter = filter; });
+      note_change(state_, state_.bodies[id.index], kept_->pair_cache);
       wake_all(state_);
       return {};
     }
@@ -262,6 +264,7 @@ Error World<D>::set_tuning(const Tuning& tuning) {
   if (tuning.substeps != old.substeps)
     scale_impulses(static_cast<float>(old.substeps) / static_cast<float>(tuning.substeps), state_);
   old = tuning;
+  kept_->pair_cache.forget_all();
   wake_all(state_);
   return {};
 }

@@ -8,8 +8,8 @@
 
 namespace cycloid::figures {
 
-/// Between single quotes gnuplot reads everything as it stands, but for the quote itself.
-static std::string quoted(const std::string& text) {
+// Between single quotes gnuplot reads everything as it stands, but for the quote itself.
+std::string quoted(const std::string& text) {
   std::string result = "'";
   for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
   return result + "'";
@@ -40,19 +40,23 @@ std::string gnuplot_script(const experiments::Figure& figure, const std::string&
   return script.str();
 }
 
+std::string run_gnuplot(const std::string& script, const std::string& file) {
+  FILE* gnuplot = popen("gnuplot -", "w");
+  if (gnuplot == nullptr) return "gnuplot cannot be started";
+  const bool written = fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
+  const int status = pclose(gnuplot);
+  if (written && status == 0) return "";
+  std::error_code error;
+  std::filesystem::remove(file, error);
+  return file + ": gnuplot did not draw it; is the package gnuplot-nox installed?";
+}
+
 std::string draw(const experiments::Figure& figure, const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) return folder + ": cannot be made: " + error.message();
   const std::string file = (std::filesystem::path(folder) / (figure.name + ".svg")).string();
-  FILE* gnuplot = popen("gnuplot -", "w");
-  if (gnuplot == nullptr) return "gnuplot cannot be started";
-  const std::string script = gnuplot_script(figure, file);
-  const bool written = fwrite(script.data(), 1, script.size(), gnuplot) == script.size();
-  const int status = pclose(gnuplot);
-  if (written && status == 0) return "";
-  std::filesystem::remove(file, error);
-  return file + ": gnuplot did not draw it; is the package gnuplot-nox installed?";
+  return run_gnuplot(gnuplot_script(figure, file), file);
 }
 
 }  // namespace cycloid::figures

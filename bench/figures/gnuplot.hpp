@@ -10,6 +10,13 @@ namespace cycloid::figures {
 /// give equal text.
 std::string gnuplot_script(const experiments::Figure& figure, const std::string& svg_file);
 
+/// Text between quotes that gnuplot reads as it stands.
+std::string quoted(const std::string& text);
+
+/// Runs a program that writes `file`, with the gnuplot that is installed.
+/// @returns "" or why it could not; then no half-drawn file is left.
+std::string run_gnuplot(const std::string& script, const std::string& file);
+
 /// Draws into FOLDER/NAME.svg with the gnuplot that is installed.
 /// @returns "" or why it could not; then no half-drawn file is left.
 std::string draw(const experiments::Figure& figure, const std::string& folder);

@@ -42,6 +42,7 @@ void LoadClient::start() {
 }
 
 void LoadClient::stop() {
+  ended_ = true;
   asio::error_code ignored;
   timer_.cancel();
   socket_.close(ignored);
@@ -79,10 +80,10 @@ void LoadClient::read() {
 
 void LoadClient::take(std::size_t bytes) {
   tally_.bytes_in += bytes;
-  if (!framer_.feed(std::span<const std::byte>(incoming_).first(bytes))) return stop();
+  if (!framer_.feed(std::span<const std::byte>(incoming_).first(bytes))) return end();
   while (const auto payload = framer_.next()) {
     const auto decoded = protocol::decode_server(*payload);
-    if (!decoded.message) return stop();
+    if (!decoded.message) return end();
     on_message(*decoded.message, payload->size() + protocol::Framer::kPrefixBytes);
   }
 }
@@ -175,7 +176,7 @@ void LoadClient::write() {
   writing_ = true;
   auto written = [self = shared_from_this()](const asio::error_code& error, std::size_t) {
     self->writing_ = false;
-    if (error) return;
+    if (error) return self->end();
     self->queue_.pop_front();
     self->write();
   };
@@ -184,7 +185,6 @@ void LoadClient::write() {
 
 void LoadClient::end() {
   if (ended_) return;
-  ended_ = true;
   ++tally_.closed;
   stop();
 }

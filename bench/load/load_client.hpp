@@ -38,7 +38,8 @@ struct ClientPlan {
 struct ClientTally {
   std::uint64_t joined = 0;
   std::uint64_t refused = 0;
-  std::uint64_t closed = 0;  ///< Connections that ended, refused ones among them.
+  std::uint64_t closed =
+      0;  ///< Connections that the server or an error ended, refused ones among them.
   std::uint64_t frames = 0;
   std::uint64_t snapshots = 0;
   std::uint64_t gaps = 0;      ///< Frames that were not the next one.
@@ -47,7 +48,7 @@ struct ClientTally {
   std::uint64_t update_bytes = 0;  ///< Of frames and snapshots alone, as they travel.
   std::string last_refusal;
   Samples frame_gap_ms;       ///< Between two frames, or snapshots, of a client.
-  Samples input_to_state_ms;  ///< From an input's last byte to what shows its tick.
+  Samples input_to_state_ms;  ///< From when an input is queued to what shows its tick.
   Samples join_ms;            ///< From the connection to the first whole state.
 
   /// Forgets times and bytes, and keeps who is there: the warm-up is over.
@@ -59,7 +60,7 @@ class LoadClient : public std::enable_shared_from_this<LoadClient> {
  public:
   LoadClient(asio::io_context& io, const ClientPlan& plan, ClientTally& tally);
   void start();
-  void stop();
+  void stop();  ///< Ends the connection; it does not count as closed.
 
  private:
   void greet();

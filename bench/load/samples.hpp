@@ -13,7 +13,6 @@ class Samples {
     values_.push_back(value);
     sorted_ = false;
   }
-  std::size_t count() const { return values_.size(); }
   /// The smallest value that at least `permille` / 1000 of all are not above; 0 of none.
   double quantile(std::size_t permille) {
     if (values_.empty()) return 0.0;

@@ -34,18 +34,21 @@ std::vector<Scenario> scenarios();
 
 struct GroupResult {
   std::string name;
+  Behaviour behaviour = Behaviour::kPlays;
   int clients = 0;
   ClientTally tally;
 };
 
 struct ScenarioResult {
   std::string name;
-  double seconds = 0.0;         ///< Measured, the warm-up not counted.
-  double cpu_percent = 0.0;     ///< Of one core, of the server.
-  double resident_mb = 0.0;     ///< Of the server, at the end.
-  double ticks = 0.0;           ///< Of all rooms.
-  double catch_up_ticks = 0.0;  ///< Ticks that began after another's time: overruns.
-  double slowed_ms = 0.0;       ///< By overload, of all rooms.
+  double seconds = 0.0;          ///< Measured, the warm-up not counted.
+  double cpu_percent = 0.0;      ///< Of one core, of the server.
+  double resident_mb = 0.0;      ///< Of the server, at the end.
+  double ticks = 0.0;            ///< Of all rooms.
+  double catch_up_ticks = 0.0;   ///< Ticks that began after another's time: overruns.
+  double slowed_ms = 0.0;        ///< By overload, of all rooms.
+  double cpu_us_per_tick = 0.0;  ///< Of all that the server does, for each tick of a room.
+  double tick_mean_us = 0.0;     ///< To make a tick, without its I/O; by the clock.
   double tick_p99_ms = 0.0;
   double late_p50_ms = 0.0;
   double late_p99_ms = 0.0;
@@ -55,6 +58,10 @@ struct ScenarioResult {
   double control_p999_ms = 0.0;
   std::vector<GroupResult> groups;
 };
+
+/// What the server has not held up, in sentences: clients that were refused, lost or never let in,
+/// and ticks that began in the time of others.
+std::vector<std::string> failures_of(const ScenarioResult& result);
 
 /// Starts the server, connects the clients, waits for the warm-up, measures, ends the server.
 /// @param program  `cycloid`.

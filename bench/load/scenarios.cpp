@@ -56,4 +56,29 @@ std::vector<Scenario> scenarios() {
   return all;
 }
 
+std::vector<std::string> failures_of(const ScenarioResult& result) {
+  std::vector<std::string> failures;
+  const auto number = [](double value) {
+    return std::to_string(static_cast<std::uint64_t>(value));
+  };
+  for (const GroupResult& group : result.groups) {
+    const ClientTally& tally = group.tally;
+    const auto clients = static_cast<std::uint64_t>(group.clients);
+    const bool joins = group.behaviour != Behaviour::kIdles && group.behaviour != Behaviour::kDrips;
+    const auto say = [&](std::uint64_t count, const char* what) {
+      failures.push_back(group.name + ": " + std::to_string(count) + " of " +
+                         std::to_string(clients) + what);
+    };
+    if (joins && tally.joined < clients) say(clients - tally.joined, " never joined");
+    if (tally.refused != 0) say(tally.refused, (" were refused: " + tally.last_refusal).c_str());
+    if (tally.closed > tally.refused) say(tally.closed - tally.refused, " lost their connection");
+  }
+  if (result.ticks <= 0.0) failures.push_back("no room made a tick");
+  if (result.catch_up_ticks > 0.0) {
+    failures.push_back(number(result.catch_up_ticks) + " of " + number(result.ticks) +
+                       " ticks began in the time of the next");
+  }
+  return failures;
+}
+
 }  // namespace cycloid::load

@@ -26,7 +26,6 @@ class ServerProcess {
   ~ServerProcess();
 
   std::uint16_t port() const { return port_; }
-  pid_t id() const { return id_; }
   Usage usage() const;
   /// SIGTERM; waits for the end and returns what it printed on stdout after it listened.
   std::string stop();

@@ -1,11 +1,14 @@
 #include "bench/peers/accuracy.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <set>
+
 #include "solver/collision/bounds_tree.hpp"
 #include "solver/collision/collide.hpp"
 
 namespace cycloid::peers {
 
-using solver::Body;
 using solver::Joint;
 using solver::JointKind;
 using solver::Pose;
@@ -13,21 +16,30 @@ using solver::Shape;
 using solver::ShapeKind;
 using solver::WorldState;
 
-static bool may_meet(const WorldState<3>& state, const Shape<3>& a, const Shape<3>& b) {
+/// Bodies whose joint keeps their shapes from colliding; the lower slot first.
+using JoinedBodies = std::set<std::pair<std::uint32_t, std::uint32_t>>;
+
+template <int D>
+static JoinedBodies joined_bodies(const WorldState<D>& state) {
+  JoinedBodies joined;
+  for (const Joint<D>& joint : state.joints)
+    if (joint.kind != JointKind::kFree && joint.collide_connected == 0)
+      joined.insert(std::minmax(joint.body_a, joint.body_b));
+  return joined;
+}
+
+template <int D>
+static bool may_meet(const WorldState<D>& state, const JoinedBodies& joined, const Shape<D>& a,
+                     const Shape<D>& b) {
   if (a.body == b.body || !filters_meet(a.filter, b.filter)) return false;
   if (state.bodies[a.body].inverse_mass == 0.0f && state.bodies[b.body].inverse_mass == 0.0f)
     return false;
-  for (const Joint<3>& joint : state.joints)
-    if (joint.kind != JointKind::kFree && joint.collide_connected == 0 &&
-        ((joint.body_a == a.body && joint.body_b == b.body) ||
-         (joint.body_a == b.body && joint.body_b == a.body)))
-      return false;
-  return true;
+  return !joined.contains(std::minmax(a.body, b.body));
 }
 
-static float overlap_of(const WorldState<3>& state, const Poses& poses, const Shape<3>& a,
-                        const Shape<3>& b) {
-  if (!may_meet(state, a, b)) return 0.0f;
+template <int D>
+static float overlap_of(const WorldState<D>& state, const Poses<D>& poses, const Shape<D>& a,
+                        const Shape<D>& b) {
   const auto manifold = collide(a, poses(a.body), b, poses(b.body), 0.0f, state.polyhedra);
   float depth = 0.0f;
   for (std::uint32_t i = 0; i < manifold.point_count; ++i)
@@ -35,31 +47,36 @@ static float overlap_of(const WorldState<3>& state, const Poses& poses, const Sh
   return depth;
 }
 
-float deepest_overlap(const WorldState<3>& state, const Poses& poses) {
-  std::vector<solver::BoundsTree<3>::Leaf> leaves;
+template <int D>
+std::vector<float> overlaps_of(const WorldState<D>& state, const Poses<D>& poses) {
+  std::vector<typename solver::BoundsTree<D>::Leaf> leaves;
   std::vector<std::uint32_t> half_spaces;
   for (std::uint32_t s = 0; s < state.shapes.size(); ++s) {
-    const Shape<3>& shape = state.shapes[s];
+    const Shape<D>& shape = state.shapes[s];
     if (shape.kind == ShapeKind::kFree) continue;
     if (shape.kind == ShapeKind::kHalfSpace)
       half_spaces.push_back(s);
     else
       leaves.push_back({bounds_of(shape, poses(shape.body), 0.0f), s});
   }
-  solver::BoundsTree<3> tree;
+  solver::BoundsTree<D> tree;
   tree.build(leaves);
-  float depth = 0.0f;
+  const JoinedBodies joined = joined_bodies(state);
+  std::vector<float> depths;
+  const auto meet = [&](const Shape<D>& a, const Shape<D>& b) {
+    if (!may_meet(state, joined, a, b)) return;
+    const float depth = overlap_of(state, poses, a, b);
+    if (depth > 0.0f) depths.push_back(depth);
+  };
   for (const auto& leaf : leaves) {
-    const Shape<3>& shape = state.shapes[leaf.id];
-    for (const std::uint32_t s : half_spaces)
-      depth = std::max(depth, overlap_of(state, poses, shape, state.shapes[s]));
+    const Shape<D>& shape = state.shapes[leaf.id];
+    for (const std::uint32_t s : half_spaces) meet(shape, state.shapes[s]);
     tree.query(leaf.bounds, [&](int rank) {
       const std::uint32_t other = tree.leaf(rank).id;
-      if (other > leaf.id)
-        depth = std::max(depth, overlap_of(state, poses, shape, state.shapes[other]));
+      if (other > leaf.id) meet(shape, state.shapes[other]);
     });
   }
-  return depth;
+  return depths;
 }
 
 static bool holds_points(JointKind kind) {
@@ -67,17 +84,41 @@ static bool holds_points(JointKind kind) {
          kind == JointKind::kConeTwist;
 }
 
-float widest_gap(const WorldState<3>& state, const Poses& poses) {
-  float widest = 0.0f;
-  for (const Joint<3>& joint : state.joints) {
+template <int D>
+std::vector<float> gaps_of(const WorldState<D>& state, const Poses<D>& poses) {
+  std::vector<float> gaps;
+  for (const Joint<D>& joint : state.joints) {
     if (!holds_points(joint.kind)) continue;
-    const Pose<3> a = poses(joint.body_a);
-    const Pose<3> b = poses(joint.body_b);
+    const Pose<D> a = poses(joint.body_a);
+    const Pose<D> b = poses(joint.body_b);
     const auto gap = (b.position - a.position) +
                      (rotate(b.rotation, joint.anchor_b) - rotate(a.rotation, joint.anchor_a));
-    widest = std::max(widest, length(gap));
+    gaps.push_back(length(gap));
   }
-  return widest;
+  return gaps;
 }
+
+static float largest_of(const std::vector<float>& sizes) {
+  return sizes.empty() ? 0.0f : *std::max_element(sizes.begin(), sizes.end());
+}
+
+template <int D>
+Accuracy measure_accuracy(const WorldState<D>& state, const Poses<D>& poses) {
+  Accuracy accuracy;
+  for (std::uint32_t i = 0; i < state.bodies.size(); ++i)
+    for (const float value : poses(i).position.v)
+      if (!std::isfinite(value)) accuracy.finite = false;
+  if (!accuracy.finite) return accuracy;
+  accuracy.overlap_m = largest_of(overlaps_of(state, poses));
+  accuracy.gap_m = largest_of(gaps_of(state, poses));
+  return accuracy;
+}
+
+template Accuracy measure_accuracy(const WorldState<2>&, const Poses<2>&);
+template Accuracy measure_accuracy(const WorldState<3>&, const Poses<3>&);
+template std::vector<float> overlaps_of(const WorldState<2>&, const Poses<2>&);
+template std::vector<float> overlaps_of(const WorldState<3>&, const Poses<3>&);
+template std::vector<float> gaps_of(const WorldState<2>&, const Poses<2>&);
+template std::vector<float> gaps_of(const WorldState<3>&, const Poses<3>&);
 
 }  // namespace cycloid::peers

@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <vector>
 
 #include "solver/collision/manifold.hpp"
 #include "solver/world.hpp"
@@ -8,14 +9,29 @@
 namespace cycloid::peers {
 
 /// Where every body of a state is, by slot: centre of mass, world.
-using Poses = std::function<solver::Pose<3>(std::uint32_t body)>;
+template <int D>
+using Poses = std::function<solver::Pose<D>(std::uint32_t body)>;
 
-/// The depth of the deepest overlap of any two shapes that may collide, m; 0 where none overlap.
-/// Measured with our manifolds at the given poses, whoever made them. Every pair of shapes whose
-/// boxes meet is tried: O(n log n).
-float deepest_overlap(const solver::WorldState<3>& state, const Poses& poses);
+/// One ruler for every engine: our manifolds and the joints' anchors, at given poses.
+struct Accuracy {
+  float overlap_m = 0.0f;  ///< The deepest of any two shapes that may collide.
+  float gap_m = 0.0f;      ///< The widest between the anchors of a joint that holds two points.
+  /// Whether every body is somewhere: an engine may lose one to infinity.
+  bool finite = true;
+};
 
-/// The largest distance between the anchors of any joint that holds two points together, m.
-float widest_gap(const solver::WorldState<3>& state, const Poses& poses);
+/// Every pair of shapes whose boxes meet is tried: O(n log n).
+/// @param state  the scene at tick 0, whoever has made the poses.
+template <int D>
+Accuracy measure_accuracy(const solver::WorldState<D>& state, const Poses<D>& poses);
+
+/// The depth [m] of every pair of shapes that may collide and overlaps, in no particular order.
+/// @pre every pose is finite; otherwise as `measure_accuracy`.
+template <int D>
+std::vector<float> overlaps_of(const solver::WorldState<D>& state, const Poses<D>& poses);
+
+/// The distance [m] between the anchors of every joint that holds two points together, by slot.
+template <int D>
+std::vector<float> gaps_of(const solver::WorldState<D>& state, const Poses<D>& poses);
 
 }  // namespace cycloid::peers

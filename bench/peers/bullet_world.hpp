@@ -1,10 +1,6 @@
 #pragma once
 
-#include <memory>
-#include <span>
-
-#include "scenes/build.hpp"
-#include "solver/collision/manifold.hpp"
+#include "bench/peers/engine.hpp"
 
 namespace cycloid::peers {
 
@@ -13,25 +9,7 @@ namespace cycloid::peers {
 /// scene at tick 0. Friction mixes alike in both (Bullet multiplies, so it is given the roots).
 ///
 /// Approximations: a wheel joint is Bullet's Hinge2; the friction of a cone-twist joint is left
-/// out; cloths, characters and the damping of mass-less things are not there.
-class BulletWorld {
- public:
-  /// @param sleep  whether bodies at rest are put to sleep.
-  BulletWorld(const scenes::Built<3>& built, bool sleep);
-  ~BulletWorld();
-
-  /// Applies the controls of every seat, then steps one tick.
-  void step(std::span<const scenes::SeatInput> inputs);
-
-  /// Of a body of the built scene, by slot: centre of mass, world.
-  solver::Pose<3> pose(std::uint32_t body) const;
-
-  /// Bytes that Bullet holds now, of all worlds of this process.
-  static std::size_t bytes();
-
- private:
-  struct Parts;
-  std::unique_ptr<Parts> parts_;
-};
+/// out. Null where the scene has cloths, characters, or joints of other kinds.
+std::unique_ptr<Engine<3>> make_bullet_world(const EngineInput<3>& input, std::string& why);
 
 }  // namespace cycloid::peers

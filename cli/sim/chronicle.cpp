@@ -18,7 +18,7 @@ const char* event_name(Event event) {
       "resyncs",      "server pauses", "kills",       "power cuts",
       "restarts",     "short writes",  "interrupted", "write errors",
       "disk full",    "sync errors",   "disk stalls", "flips on read",
-      "log verified", "slow dropped"};
+      "log verified", "rotations",     "slow dropped"};
   return kNames[static_cast<std::size_t>(event)];
 }
 

@@ -59,6 +59,7 @@ enum class Event : std::uint8_t {
   kDiskStall,
   kReadFlip,
   kLogVerified,
+  kRotation,
   kSlowPeerDropped,
   kCount
 };

@@ -211,6 +211,7 @@ void SimClient::calm() {
 std::string SimClient::lacks() const {
   const RoomHost& room = host_->room(persona_.room);
   if (!host_->listens(persona_.room)) return "has no server";
+  if (room.doomed()) return "is in a room whose log has ended";
   const bool connected = wire_ && !wire_->down.is_reset() && wire_->era == room.era() &&
                          !wire_->up.finished() && !wire_->up.is_lost() && !wire_->down.is_lost();
   if (!connected || farewell_until_ns_ != kNever) return "has no connection";

@@ -54,8 +54,9 @@ void RoomHost::open() {
   header.scene = scene_bytes_;
   const ServerSettings& server = settings_->server;
   const SimLog::Options options{server.log, server.sync_interval_ns, server.log_queue_bytes_max,
-                                settings_->plant};
-  log_ = std::make_unique<SimLog>(*disk_, number_ * 1000 + era(), header, options, *chronicle_);
+                                server.keyframe_ticks, settings_->plant};
+  const std::uint64_t first_file = (number_ * 1000 + era()) * 1000;
+  log_ = std::make_unique<SimLog>(*disk_, first_file, header, options, *chronicle_);
   confirm_ = std::make_unique<Confirm>(*ledgers_.back(), *log_);
   server::RoomHooks hooks;
   hooks.now_ns = [this] { return chronicle_->now_ns; };
@@ -78,7 +79,7 @@ void RoomHost::step(std::int64_t step_ns) {
   sessions_.remove_if([](const Session& session) { return session.closed(); });
   if (running() && chronicle_->now_ns >= room_->next_deadline_ns()) room_->advance();
   if (!running() && over_at_ns_ == kNever) over_at_ns_ = chronicle_->now_ns + kStopNs;
-  log_->work();
+  log_->turn();
   check_seats();
   check_room();
   if (room_->tick() >= next_check_tick_ && running() && !disk_->killed()) {
@@ -105,12 +106,16 @@ void RoomHost::check_room() {
   if (room_->statistics().desyncs != 0 && !desyncs_excused_) {
     chronicle_->violate(Invariant::kHonesty, "the room takes an honest client for desynced");
   }
-  const bool each = settings_->server.log == LogMode::kEveryTick;
+  const bool each = settings_->server.log == server::LogSync::kEveryTick;
   if (each && settings_->plant == Plant::kNone && log_->durable() && !disk_->killed() &&
       log_->synced_ticks() != room_->tick()) {
     chronicle_->violate(Invariant::kLog, "clients hear of tick " + std::to_string(room_->tick()) +
                                              " before it is on the disk");
   }
+}
+
+void RoomHost::rotate_log() {
+  if (running()) log_->rotate();
 }
 
 void RoomHost::drain() {
@@ -124,23 +129,27 @@ void RoomHost::die(Death death) {
   room_.reset();
   check_log(death);
   check_replay();
-  disk_->forget(log_->file());
+  log_->die();
+  for (const std::uint64_t file : log_->files()) disk_->forget(file);
 }
 
 void RoomHost::check_log(std::optional<Death> death) {
-  const protocol::Bytes& bytes = disk_->content(log_->file());
-  const auto mistake = log_mistake({log_.get(), ledgers_.back().get(), death}, bytes);
+  const std::uint64_t file = log_->files().back();
+  const auto mistake = log_mistake({log_.get(), ledgers_.back().get(), death}, *disk_);
   if (mistake) chronicle_->violate(Invariant::kLog, *mistake);
-  const auto flip = flip_mistake(*ledgers_.back(), disk_->flipped(log_->file()));
+  const auto flip = flip_mistake(*ledgers_.back(), disk_->flipped(file));
   if (flip) chronicle_->violate(Invariant::kLog, *flip);
   chronicle_->count(Event::kLogVerified);
-  chronicle_->mix(bytes.size());
+  chronicle_->mix(disk_->content(file).size());
 }
 
 void RoomHost::check_replay() {
   if (const auto differs = ledgers_.back()->not_replayable(simulation_of(*scene_))) {
     chronicle_->violate(Invariant::kDigests, *differs);
   }
+  const protocol::Bytes& log = disk_->content(log_->files().back());
+  if (const auto mistake = seek_mistake(log, simulation_of(*scene_)))
+    chronicle_->violate(Invariant::kLog, *mistake);
 }
 
 Host::Host(const Settings& settings, const scenes::Scene& scene, const Random& random,
@@ -165,6 +174,7 @@ void Host::draw_misfortunes() {
   };
   draw(settings_->server.pauses, pauses_ns_);
   draw(settings_->server.deaths, deaths_ns_);
+  draw(settings_->server.rotations, rotations_ns_);
 }
 
 void Host::step(std::int64_t step_ns) {
@@ -186,6 +196,10 @@ void Host::step(std::int64_t step_ns) {
     chronicle_->count(Event::kServerPause);
     chronicle_->note("the server is not run for a while");
     return;
+  }
+  if (!rotations_ns_.empty() && now >= rotations_ns_.back()) {
+    rotations_ns_.pop_back();
+    for (RoomHost& room : rooms_) room.rotate_log();
   }
   for (RoomHost& room : rooms_) {
     room.step(step_ns);
@@ -221,6 +235,7 @@ void Host::calm() {
   disk_.calm();
   pauses_ns_.clear();
   deaths_ns_.clear();
+  rotations_ns_.clear();
 }
 
 void Host::drain() {

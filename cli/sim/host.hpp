@@ -30,11 +30,14 @@ class RoomHost {
   void open();
   void accept(std::shared_ptr<Wire> wire);
   void step(std::int64_t step_ns);
+  void rotate_log();
   void drain();
   /// The process is gone; `disk` shows already what it has left.
   void die(Death death);
 
   bool running() const { return room_ && room_->state() == server::RoomState::kRunning; }
+  /// Its log is gone, and with its next tick the room will be too, as was asked for.
+  bool doomed() const { return room_ && settings_->server.stop_on_log_error && !log_->durable(); }
   /// The room has ended by itself, and all had time to be told: whoever stays makes no difference.
   bool over() const { return room_ && !running() && chronicle_->now_ns >= over_at_ns_; }
   std::uint64_t tick() const { return room_ ? room_->tick() : 0; }
@@ -46,7 +49,7 @@ class RoomHost {
 
   /// The log as it is now, and a read of it with one bit wrong.
   void check_log(std::optional<Death> death);
-  /// All that was confirmed in this era, stepped again.
+  /// All that was confirmed in this era, stepped again, and the end of its log from a keyframe on.
   void check_replay();
 
  private:
@@ -59,6 +62,11 @@ class RoomHost {
       log_->tick(tick);
     }
     void close(const protocol::LogFooter& footer) override { log_->close(footer); }
+    bool wants_keyframe(std::uint64_t tick) const override { return log_->wants_keyframe(tick); }
+    void keyframe(std::uint64_t tick, std::uint64_t digest,
+                  std::span<const std::byte> state) override {
+      log_->keyframe(tick, digest, state);
+    }
     bool durable() const override { return log_->durable(); }
     std::string error() const override { return log_->error(); }
 
@@ -121,6 +129,7 @@ class Host {
   std::vector<RoomHost> rooms_;
   std::vector<std::int64_t> pauses_ns_;  ///< When they begin; the last first.
   std::vector<std::int64_t> deaths_ns_;
+  std::vector<std::int64_t> rotations_ns_;
   std::int64_t paused_until_ns_ = 0;
   std::int64_t up_at_ns_ = 0;
   bool up_ = false;

@@ -102,14 +102,16 @@ void Ledger::check_seat(std::uint64_t tick, std::size_t seat, const protocol::Se
   }
 }
 
-std::optional<std::string> Ledger::not_a_prefix(std::span<const protocol::LogTick> ticks) const {
-  if (ticks.size() > ticks_.size()) {
-    return std::to_string(ticks.size()) + " ticks, of which only " + std::to_string(ticks_.size()) +
-           " were confirmed";
+std::optional<std::string> Ledger::not_a_prefix(std::span<const protocol::LogTick> ticks,
+                                                std::uint64_t before) const {
+  if (before + ticks.size() > ticks_.size()) {
+    return std::to_string(before + ticks.size()) + " ticks, of which only " +
+           std::to_string(ticks_.size()) + " were confirmed";
   }
   for (std::size_t i = 0; i < ticks.size(); ++i) {
-    if (ticks[i].digest == ticks_[i].digest && ticks[i].frame == ticks_[i].frame) continue;
-    return "tick " + std::to_string(i + 1) + " is not the one that was confirmed";
+    const protocol::LogTick& confirmed = ticks_[static_cast<std::size_t>(before) + i];
+    if (ticks[i].digest == confirmed.digest && ticks[i].frame == confirmed.frame) continue;
+    return "tick " + std::to_string(before + i + 1) + " is not the one that was confirmed";
   }
   return {};
 }

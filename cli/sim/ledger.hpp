@@ -36,8 +36,10 @@ class Ledger {
   /// Somebody in this room says what honest clients would not: given inputs are not checked.
   void excuse_inputs() { inputs_excused_ = true; }
 
-  /// Whether `ticks` are how this ledger begins. Says where they are not.
-  std::optional<std::string> not_a_prefix(std::span<const protocol::LogTick> ticks) const;
+  /// Whether `ticks` are how this ledger goes on behind its first `before` ticks. Says where they
+  /// are not.
+  std::optional<std::string> not_a_prefix(std::span<const protocol::LogTick> ticks,
+                                          std::uint64_t before = 0) const;
   /// Steps a world by the frames and compares every digest. Says where they differ.
   std::optional<std::string> not_replayable(scenes::Simulation fresh) const;
 

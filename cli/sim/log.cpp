@@ -1,7 +1,7 @@
 #include "cli/sim/log.hpp"
 
-#include <span>
 #include <utility>
+#include <vector>
 
 namespace cycloid::sim {
 namespace {
@@ -10,17 +10,28 @@ constexpr std::uint64_t kTickOfPlant = 30;
 
 }  // namespace
 
-SimLog::SimLog(SimDisk& disk, std::uint64_t file, const protocol::LogHeader& header,
+SimLog::SimLog(SimDisk& disk, std::uint64_t first_file, const protocol::LogHeader& header,
                const Options& options, Chronicle& chronicle)
-    : disk_(&disk), file_(file), options_(options), chronicle_(&chronicle) {
-  encoder_.emplace(header, queue_);
-  disk_->create(file_, queue_);
-  queue_.clear();
-  next_sync_ns_ = chronicle_->now_ns + options_.interval_ns;
+    : machine_(&disk),
+      options_(options),
+      chronicle_(&chronicle),
+      disk_(std::make_shared<LogDisk>(disk, first_file, options.plant)) {
+  server::LogWriterOptions writing;
+  writing.path = "0";
+  writing.sync = options_.sync;
+  writing.interval = std::chrono::milliseconds(options_.interval_ns / kMillisecond);
+  writing.queue_bytes_max = options_.queue_bytes_max;
+  writing.keyframes = {options_.keyframe_ticks, std::uint64_t{1} << 20};
+  writing.disk = disk_;
+  writing.threaded = false;
+  writing.now_ns = [this] { return chronicle_->now_ns; };
+  writing.unix_now_ns = writing.now_ns;
+  writing.random = [number = header.salt]() mutable { return number = scramble(number + 1); };
+  writer_ = std::make_unique<server::LogWriter>(std::move(writing), header);
 }
 
 void SimLog::tick(const protocol::LogTick& tick) {
-  if (!durable() || closed_) return;
+  if (closed_) return;
   const std::uint64_t number = tick.frame.tick;
   if (options_.plant == Plant::kLogDropsRecord && number == kTickOfPlant) return;
   if (options_.plant == Plant::kLogSwapsRecords && number == kTickOfPlant) {
@@ -29,76 +40,102 @@ void SimLog::tick(const protocol::LogTick& tick) {
   }
   hand_over(tick);
   if (kept_) hand_over(*std::exchange(kept_, std::nullopt));
-  if (options_.mode != LogMode::kEveryTick) return;
-  write();
-  sync();
 }
 
 void SimLog::hand_over(const protocol::LogTick& tick) {
-  encoder_->tick(tick, queue_);
+  if (ticks_ == synced_ticks_) unsynced_since_ns_ = chronicle_->now_ns;
+  const std::uint64_t syncs_before = disk_->syncs();
+  writer_->tick(tick);
   ticks_ = tick.frame.tick;
-  if (queue_.size() > options_.queue_bytes_max) fail("the disk does not keep up");
+  if (options_.sync == server::LogSync::kEveryTick) take_note(syncs_before);
+}
+
+void SimLog::keyframe(std::uint64_t tick, std::uint64_t digest, std::span<const std::byte> state) {
+  std::vector<std::byte> said(state.begin(), state.end());
+  if (options_.plant == Plant::kLogSpoilsKeyframe) said[said.size() / 2] ^= std::byte{4};
+  writer_->keyframe(tick, digest, said);
 }
 
 void SimLog::close(const protocol::LogFooter& footer) {
-  if (durable() && !closed_) {
-    encoder_->footer(footer, queue_);
-    write();
-    sync();
-  }
-  closed_ = true;
+  const std::uint64_t syncs_before = disk_->syncs();
+  if (!std::exchange(closed_, true)) writer_->close(footer);
+  take_note(syncs_before);
 }
 
-void SimLog::work() {
-  if (!durable() || closed_ || disk_->stalled()) return;
-  write();
-  if (chronicle_->now_ns < next_sync_ns_) return;
-  next_sync_ns_ = chronicle_->now_ns + options_.interval_ns;
-  if (synced_ticks_ != written_ticks_) sync();
+void SimLog::turn() {
+  if (!durable() || closed_ || machine_->stalled()) return;
+  const std::uint64_t syncs_before = disk_->syncs();
+  writer_->turn();
+  take_note(syncs_before);
+  const bool in_time = options_.sync != server::LogSync::kInterval || !durable() ||
+                       machine_->killed() || synced_ticks_ == ticks_ ||
+                       chronicle_->now_ns < unsynced_since_ns_ + options_.interval_ns;
+  if (in_time) return;
+  chronicle_->violate(Invariant::kLog, "tick " + std::to_string(synced_ticks_ + 1) +
+                                           " waits for a sync for longer than the interval");
 }
 
-void SimLog::write() {
-  std::size_t done = 0;
-  while (durable() && done < queue_.size()) {
-    const DiskWrite wrote = disk_->write(file_, std::span<const std::byte>(queue_).subspan(done));
-    done += wrote.bytes;
-    if (wrote.error == DiskError::kInputOutput) fail("write: input/output error");
-    if (wrote.error == DiskError::kNoSpace) fail("write: no space left");
-  }
-  queue_.clear();
-  if (durable() && !disk_->killed()) written_ticks_ = ticks_;
+void SimLog::take_note(std::uint64_t syncs_before) {
+  if (!durable() || machine_->killed()) return;
+  written_ticks_ = ticks_;
+  if (disk_->syncs() != syncs_before) synced_ticks_ = ticks_;
 }
 
-void SimLog::sync() {
-  DiskError error = DiskError::kInterrupted;
-  while (durable() && error == DiskError::kInterrupted) error = disk_->sync(file_);
-  if (error == DiskError::kInputOutput) fail("sync: input/output error");
-  if (durable() && !disk_->killed()) synced_ticks_ = written_ticks_;
+void SimLog::rotate() {
+  if (closed_ || !durable()) return;
+  if (writer_->rotate(std::to_string(rotations_ + 1))) return;  // The last one is not done yet.
+  ++rotations_;
+  chronicle_->count(Event::kRotation);
+  chronicle_->note("the log is to go on in another file");
 }
 
-void SimLog::fail(const std::string& what) {
-  if (!error_.empty()) return;
-  error_ = what;
-  chronicle_->note("the log has ended: " + what);
+namespace {
+
+/// The parts before the last: whole, whatever happened since, and each going on from the one
+/// before.
+std::optional<std::string> older_mistake(const Ledger& ledger, const protocol::Log& part,
+                                         std::uint64_t goes_on_from) {
+  if (part.state != protocol::LogState::kComplete) return "a rotated log: " + part.reason;
+  if (part.header.branch_tick != goes_on_from) return "a rotated log goes on from another tick";
+  if (const auto differs = ledger.not_a_prefix(part.ticks, part.header.branch_tick))
+    return "a rotated log: " + *differs;
+  return {};
 }
 
-std::optional<std::string> log_mistake(const LogFound& found, const protocol::Bytes& bytes) {
+bool is_good(const LogFound& found, protocol::LogState state) {
   using protocol::LogState;
-  const protocol::Log read = protocol::read_log(bytes);
-  if (const auto differs = found.ledger->not_a_prefix(read.ticks)) return "the log: " + *differs;
+  const bool power_cut = found.death == Death::kPower;
+  const bool torn_may_be = found.death || !found.log->durable();
+  return state == LogState::kComplete || state == LogState::kOpen ||
+         (state == LogState::kTorn && torn_may_be) || (state == LogState::kCorrupt && power_cut);
+}
+
+}  // namespace
+
+std::optional<std::string> log_mistake(const LogFound& found, const SimDisk& disk) {
+  using protocol::LogState;
+  std::uint64_t goes_on_from = 0;
+  std::uint64_t parent = 0;
+  for (std::size_t i = 0; i + 1 < found.log->files().size(); ++i) {
+    const protocol::Log part = protocol::read_log(disk.content(found.log->files()[i]));
+    if (const auto mistake = older_mistake(*found.ledger, part, goes_on_from)) return mistake;
+    if (part.header.parent_log_id != parent) return "a rotated log names another parent";
+    goes_on_from = part.last_tick;
+    parent = part.header.log_id;
+  }
+  const protocol::Log read = protocol::read_log(disk.content(found.log->files().back()));
+  if (const auto differs = found.ledger->not_a_prefix(read.ticks, read.header.branch_tick))
+    return "the log: " + *differs;
+  if (read.header.branch_tick != goes_on_from || read.header.parent_log_id != parent)
+    return "the log does not go on from the one before";
 
   const bool power_cut = found.death == Death::kPower;
   const std::uint64_t owed = power_cut ? found.log->synced_ticks() : found.log->written_ticks();
-  if (read.ticks.size() < owed) {
-    return "the log has " + std::to_string(read.ticks.size()) + " ticks, of " +
-           std::to_string(owed) + " that it said to have" +
-           (read.reason.empty() ? "" : "; " + read.reason);
+  if (read.last_tick < owed) {
+    return "the log has " + std::to_string(read.last_tick) + " ticks, of " + std::to_string(owed) +
+           " that it said to have" + (read.reason.empty() ? "" : "; " + read.reason);
   }
-  const bool torn_may_be = found.death || !found.log->durable();
-  const bool good = read.state == LogState::kComplete || read.state == LogState::kOpen ||
-                    (read.state == LogState::kTorn && torn_may_be) ||
-                    (read.state == LogState::kCorrupt && power_cut);
-  if (!good) return "the log is not whole: " + read.reason;
+  if (!is_good(found, read.state)) return "the log is not whole: " + read.reason;
   if (found.log->closed() && found.log->durable() && !found.death &&
       read.state != LogState::kComplete) {
     return "the log was closed, but says: " + read.reason;
@@ -111,7 +148,29 @@ std::optional<std::string> flip_mistake(const Ledger& ledger, const protocol::By
   const bool seen =
       read.state != protocol::LogState::kComplete && read.state != protocol::LogState::kOpen;
   if (!seen) return "a flipped bit of the log is not seen";
-  if (const auto differs = ledger.not_a_prefix(read.ticks)) return "a flipped bit: " + *differs;
+  if (const auto differs = ledger.not_a_prefix(read.ticks, read.header.branch_tick))
+    return "a flipped bit: " + *differs;
+  return {};
+}
+
+std::optional<std::string> seek_mistake(const protocol::Bytes& bytes, scenes::Simulation fresh) {
+  const protocol::LogSummary log = protocol::scan_log(bytes);
+  if (log.keyframes.empty()) return {};
+  const std::span<const std::byte> good =
+      std::span(bytes).first(static_cast<std::size_t>(log.good_bytes));
+  protocol::LogCursor cursor(good, log.start, log.keyframes.back());
+  (void)cursor.next();
+  const protocol::LogKeyframe& keyframe = cursor.keyframe();
+  const std::string name = "the keyframe of tick " + std::to_string(keyframe.tick);
+  if (!fresh.decode(keyframe.state).ok() || fresh.digest() != keyframe.digest)
+    return name + " is not the state of its tick";
+  std::vector<scenes::SeatInput> inputs;
+  while (cursor.next() == protocol::LogCursor::Step::kTick) {
+    inputs.clear();
+    for (const protocol::SeatFrame& seat : cursor.tick().frame.seats) inputs.push_back(seat.input);
+    if (!fresh.step(inputs).ok() || fresh.digest() != cursor.tick().digest)
+      return name + ": a replay from there diverges at tick " + std::to_string(fresh.tick());
+  }
   return {};
 }
 

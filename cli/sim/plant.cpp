@@ -43,7 +43,9 @@ const char* plant_name(Plant plant) {
       "room-extends-deadline",
       "snapshot-without-impulses",
       "log-drops-record",
-      "log-swaps-records"};
+      "log-swaps-records",
+      "log-forgets-sync",
+      "log-spoils-keyframe"};
   return kNames[static_cast<std::size_t>(plant)];
 }
 

@@ -24,6 +24,8 @@ enum class Plant : std::uint8_t {
   kSnapshotWithoutImpulses,
   kLogDropsRecord,
   kLogSwapsRecords,
+  kLogForgetsSync,     ///< Of the disk: it says that it has, and has not.
+  kLogSpoilsKeyframe,  ///< A bit of the state is the other one.
   kCount
 };
 const char* plant_name(Plant plant);

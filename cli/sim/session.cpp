@@ -109,7 +109,6 @@ void Session::look_at(const protocol::Bytes& output) {
   }
   const auto* welcome = std::get_if<protocol::Welcome>(&*decoded.message);
   if (welcome == nullptr) return;
-  welcomed_ = true;
   seat_ = welcome->seat;
   chronicle_->count(Event::kWelcome);
   chronicle_->note(name() + " is welcome at tick " + std::to_string(welcome->tick) + ", seat " +

@@ -27,8 +27,6 @@ class Session {
   void die() { wire_->reset(); }
   bool closed() const { return closed_; }
 
-  server::PeerId id() const { return id_; }
-  const Wire& wire() const { return *wire_; }
   /// That a welcome gave it, while the room has not sent it away; or below 0.
   std::int32_t seat() const { return closed_ || room_->wants_close(id_) ? -1 : seat_; }
 
@@ -55,7 +53,6 @@ class Session {
   std::int64_t linger_until_ns_ = kNever;
   std::int32_t seat_ = -1;
   bool answered_ = false;
-  bool welcomed_ = false;
   bool last_word_said_ = false;
   bool reader_done_ = false;
   bool closed_ = false;

@@ -75,10 +75,13 @@ ServerSettings draw_server(Swarm swarm) {
   server.pause_max_ns = swarm.random().between(20, 3'000) * kMillisecond;
   server.deaths = swarm.rate(1, 4);
   server.power_cuts_of = 500'000;
-  server.log = swarm.random().one_in(3) ? LogMode::kEveryTick : LogMode::kInterval;
+  server.log = swarm.random().one_in(3) ? server::LogSync::kEveryTick : server::LogSync::kInterval;
   server.sync_interval_ns = swarm.random().between(20, 500) * kMillisecond;
   server.log_queue_bytes_max = swarm.pick(std::array<std::size_t, 3>{1 << 20, 1 << 20, 4096});
   server.stop_on_log_error = swarm.random().one_in(4);
+  if (swarm.random().one_in(8)) server.log = server::LogSync::kNone;
+  server.keyframe_ticks = static_cast<std::uint64_t>(swarm.random().between(10, 400));
+  server.rotations = swarm.rate(2, 8);
   return server;
 }
 

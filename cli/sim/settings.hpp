@@ -6,11 +6,11 @@
 #include <string>
 
 #include "cli/sim/disk.hpp"
-#include "cli/sim/log.hpp"
 #include "cli/sim/pipe.hpp"
 #include "cli/sim/plant.hpp"
 #include "cli/sim/random.hpp"
 #include "scenes/scene.hpp"
+#include "server/log/log_writer.hpp"
 #include "server/room/options.hpp"
 
 namespace cycloid::sim {
@@ -51,10 +51,12 @@ struct ServerSettings {
   std::int64_t pause_max_ns = 0;
   std::uint32_t deaths = 0;         ///< Times in a run that it is killed at any moment.
   std::uint32_t power_cuts_of = 0;  ///< Of a million deaths, how many are of the whole machine.
-  LogMode log = LogMode::kInterval;
+  server::LogSync log = server::LogSync::kInterval;
   std::int64_t sync_interval_ns = 100 * kMillisecond;
   std::size_t log_queue_bytes_max = std::size_t{1} << 20;
   bool stop_on_log_error = false;
+  std::uint64_t keyframe_ticks = 100;  ///< Between two states in the log.
+  std::uint32_t rotations = 0;         ///< Times in a run that every log goes on in another file.
 };
 
 /// All that a run depends on.

@@ -1,9 +1,11 @@
 #include <algorithm>
+#include <cmath>
 #include <deque>
 #include <utility>
 
 #include "client/c/guard.hpp"
 #include "client/replica/body_changes.hpp"
+#include "client/replica/interpolator.hpp"
 #include "client/token_text.hpp"
 #include "client/visit.hpp"
 #include "scenes/catalogue.hpp"
@@ -23,12 +25,13 @@ constexpr std::uint32_t kOptionsBytesMin = offsetof(cycloid_client_options, scen
 
 struct cycloid_client {
   client::JoinOptions options;
-  std::unique_ptr<client::Visit> visit;
   scenes::SeatInput input;
   client::BodyChanges bodies;
   std::vector<scenes::Pose> poses;
+  client::Interpolator states;
   std::deque<cycloid_event> events;
   std::uint64_t events_lost = 0;
+  std::unique_ptr<client::Visit> visit;  ///< Last, so first to go: its callbacks use the rest.
 
   void add(std::uint32_t kind, std::uint64_t tick, std::uint32_t subject, std::uint64_t value) {
     if (events.size() == kEventsWaitingMax) {
@@ -109,9 +112,15 @@ void note_frame(cycloid_client& to, const protocol::InputFrame& frame) {
     to.add(CYCLOID_EVENT_INPUT_DELAY, frame.tick, 0, change.value);
 }
 
-/// Bodies that came and went since the last time messages were taken in.
-void note_bodies(cycloid_client& to, client::Follower& follower) {
+/// Of the poses to show.
+std::uint64_t shown_tick(const client::Follower& follower) {
+  return std::max(follower.progress().last_tick, follower.simulation().tick());
+}
+
+/// The state to show, and the bodies that came and went since the one before.
+void note_bodies(cycloid_client& to, const client::Follower& follower) {
   to.poses = follower.poses();
+  to.states.add(shown_tick(follower), to.poses);
   const std::uint64_t tick = follower.progress().last_tick;
   for (const client::BodyChange& change : to.bodies.compare(to.poses)) {
     to.add(change.created ? CYCLOID_EVENT_BODY_CREATED : CYCLOID_EVENT_BODY_DESTROYED, tick,
@@ -169,8 +178,8 @@ cycloid_client_state state_of(const client::Visit& visit) {
   const client::Follower* follower = visit.follower();
   state.tick_rate_millihertz = follower == nullptr ? 0 : follower->tick_rate_millihertz();
   state.tick = progress.last_tick;
-  const bool stepped = follower != nullptr && follower->simulation().tick() > progress.last_tick;
-  state.predicted_tick = stepped ? follower->simulation().tick() : progress.last_tick;
+  state.predicted_tick = progress.last_tick;
+  if (follower != nullptr) state.predicted_tick = std::max(state.tick, shown_tick(*follower));
   state.digest = report.final_digest;
   state.frames = progress.frames;
   state.digests_compared = progress.digests_compared;
@@ -291,6 +300,16 @@ cycloid_status cycloid_client_read_poses(const cycloid_client* client, cycloid_p
   if (client == nullptr) return failed(CYCLOID_INVALID, "client: null");
   return guarded(
       [&] { return client::copy_out(client::to_c(client->poses), poses, capacity, count); });
+}
+
+cycloid_status cycloid_client_read_poses_at(const cycloid_client* client, double tick,
+                                            cycloid_pose* poses, uint32_t capacity,
+                                            uint32_t* count) {
+  if (client == nullptr) return failed(CYCLOID_INVALID, "client: null");
+  if (std::isnan(tick)) return failed(CYCLOID_INVALID, "tick: not a number");
+  return guarded([&] {
+    return client::copy_out(client::to_c(client->states.at(tick)), poses, capacity, count);
+  });
 }
 
 cycloid_status cycloid_client_read_events(cycloid_client* client, cycloid_event* events,

@@ -1,10 +1,11 @@
 /* Cycloid for engines and other languages: the client library and offline worlds, in C99.
  *
  * Handles are opaque. Strings and arrays that go in are copied; what comes out is copied into the
- * caller's memory. No exception leaves a call. A struct begins with its size in bytes, set by the
- * caller: a newer library understands older callers, and the other way round fields that one side
- * does not know are left at their defaults. A handle is used by one thread at a time; different
- * handles are independent.
+ * caller's memory. No exception leaves a call. A struct that begins with struct_bytes says its
+ * size, set by the caller: a newer library understands older callers, and the other way round
+ * fields that one side does not know are left at their defaults. cycloid_pose and cycloid_event
+ * have no size, for they come in arrays, and are fixed for ever. A handle is used by one thread at
+ * a time; different handles are independent.
  */
 #ifndef CYCLOID_H
 #define CYCLOID_H
@@ -23,7 +24,7 @@ extern "C" {
 
 /* Of this header; cycloid_abi_version() is that of the library. Grows when functions or fields are
  * added; what there is never changes. */
-#define CYCLOID_ABI_VERSION 1
+#define CYCLOID_ABI_VERSION 2
 
 typedef int32_t cycloid_status;
 enum {
@@ -72,7 +73,8 @@ CYCLOID_API void cycloid_simulation_destroy(cycloid_simulation* simulation);
 CYCLOID_API uint32_t cycloid_simulation_seats(const cycloid_simulation* simulation);
 CYCLOID_API uint64_t cycloid_simulation_tick(const cycloid_simulation* simulation);
 CYCLOID_API uint64_t cycloid_simulation_digest(const cycloid_simulation* simulation);
-/* One tick by one input for each seat; `inputs` may be null where the scene has no seats. */
+/* One tick by one input for each seat, all of the same struct_bytes; `inputs` may be null where the
+ * scene has no seats. */
 CYCLOID_API cycloid_status cycloid_simulation_step(cycloid_simulation* simulation,
                                                    const cycloid_input* inputs, uint32_t count);
 /* What the scene's own script lets a seat say for a tick; neutral where it says nothing. */
@@ -129,7 +131,8 @@ CYCLOID_API cycloid_status cycloid_client_options_init(cycloid_client_options* o
 
 CYCLOID_API cycloid_status cycloid_client_create(const cycloid_client_options* options,
                                                  cycloid_client** out);
-/* Says goodbye where it is connected; takes at most about a second. */
+/* Says goodbye where it is connected; takes at most about a second, or as long as the system's name
+ * service takes where it is looking up the host. */
 CYCLOID_API void cycloid_client_destroy(cycloid_client* client);
 /* Begins to connect and returns at once; what comes of it shows in the state. Once for a client. */
 CYCLOID_API cycloid_status cycloid_client_connect(cycloid_client* client);
@@ -195,6 +198,14 @@ CYCLOID_API cycloid_status cycloid_client_read_resume(const cycloid_client* clie
 CYCLOID_API cycloid_status cycloid_client_read_poses(const cycloid_client* client,
                                                      cycloid_pose* poses, uint32_t capacity,
                                                      uint32_t* count);
+
+/* The same at a time in ticks, such as 61.25: between two states that were shown, straight on for a
+ * few ticks beyond the newest, which is of `predicted_tick`. To draw at any rate, go back from that
+ * by the ticks that lie between two states (1 in lockstep) and on by the clock of the engine. For
+ * pictures alone: never the state itself. No poses where there is no state yet. Since version 2. */
+CYCLOID_API cycloid_status cycloid_client_read_poses_at(const cycloid_client* client, double tick,
+                                                        cycloid_pose* poses, uint32_t capacity,
+                                                        uint32_t* count);
 
 enum {
   CYCLOID_EVENT_JOIN = 1, /* `subject` is the seat. */

@@ -68,8 +68,10 @@ static int play(const cycloid_client_options* options) {
     if (cycloid_client_poll(client, 50) != CYCLOID_OK) return give_up("poll");
     if (cycloid_client_read_state(client, &state) != CYCLOID_OK) return give_up("state");
     events += count_events(client, &joins);
-    /* An engine would draw these. */
-    if (cycloid_client_read_poses(client, poses, pose_count, &pose_count) == CYCLOID_BUFFER) {
+    /* An engine would draw these, at the time of its own clock: here half a tick ago. */
+    const double shown = (double)state.predicted_tick - 0.5;
+    if (cycloid_client_read_poses_at(client, shown, poses, pose_count, &pose_count) ==
+        CYCLOID_BUFFER) {
       cycloid_pose* more = realloc(poses, pose_count * sizeof *poses);
       if (more == NULL) return 5;
       poses = more;

@@ -11,7 +11,7 @@ static std::string& last_error() {
   return text;
 }
 
-cycloid_status failed(cycloid_status status, const std::string& reason) noexcept {
+cycloid_status failed(cycloid_status status, std::string_view reason) noexcept {
   try {
     last_error() = reason;
   } catch (...) {  // Without memory for the reason the status has to do.

@@ -5,6 +5,7 @@
 #include <exception>
 #include <new>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "client/c/cycloid.h"
@@ -12,8 +13,9 @@
 
 namespace cycloid::client {
 
-/// Notes why a call on this thread failed; `status` goes back to the caller.
-cycloid_status failed(cycloid_status status, const std::string& reason) noexcept;
+/// Notes why a call on this thread failed; `status` goes back to the caller. Needs no memory before
+/// it is inside: what throws there is caught.
+cycloid_status failed(cycloid_status status, std::string_view reason) noexcept;
 
 /// `text` with its final 0 as far as `capacity` allows; the bytes that it takes whole.
 std::uint32_t copy_text(const std::string& text, char* into, std::uint32_t capacity) noexcept;

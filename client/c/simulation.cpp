@@ -37,6 +37,21 @@ static cycloid_status make_simulation(const char* name, cycloid_simulation*& out
   return CYCLOID_OK;
 }
 
+/// One input for each seat, as far apart as the caller's struct is long; false where that is too
+/// short, or not the same for all.
+static bool read_inputs(const cycloid_input* from, std::vector<scenes::SeatInput>& into) {
+  const std::uint32_t stride = into.empty() ? 0 : from->struct_bytes;
+  const auto* at = reinterpret_cast<const unsigned char*>(from);
+  for (scenes::SeatInput& input : into) {
+    cycloid_input known;
+    std::memcpy(&known, at, sizeof known);
+    if (known.struct_bytes < sizeof known || known.struct_bytes != stride) return false;
+    input = client::from_c(known);
+    at += stride;
+  }
+  return true;
+}
+
 cycloid_status cycloid_simulation_create(const char* scene, cycloid_simulation** out) {
   if (out == nullptr) return failed(CYCLOID_INVALID, "out: null");
   *out = nullptr;
@@ -70,11 +85,8 @@ cycloid_status cycloid_simulation_step(cycloid_simulation* simulation, const cyc
                                          std::to_string(seats) + " seats");
     }
     if (inputs == nullptr && count != 0) return failed(CYCLOID_INVALID, "inputs: null");
-    for (std::uint32_t seat = 0; seat < count; ++seat) {
-      if (inputs[seat].struct_bytes != sizeof(cycloid_input))
-        return failed(CYCLOID_INVALID, "inputs: struct_bytes");
-      simulation->inputs[seat] = client::from_c(inputs[seat]);
-    }
+    if (!read_inputs(inputs, simulation->inputs))
+      return failed(CYCLOID_INVALID, "inputs: struct_bytes");
     const solver::Error error = simulation->simulation.step(simulation->inputs);
     if (error.ok()) return cycloid_status{CYCLOID_OK};
     return failed(CYCLOID_STEP, std::string(solver::code_name(error.code)) + " " + error.field);
@@ -84,7 +96,7 @@ cycloid_status cycloid_simulation_step(cycloid_simulation* simulation, const cyc
 cycloid_status cycloid_simulation_scripted_input(const cycloid_simulation* simulation,
                                                  uint32_t seat, uint64_t tick, cycloid_input* out) {
   if (simulation == nullptr) return failed(CYCLOID_INVALID, "simulation: null");
-  if (out == nullptr || out->struct_bytes != sizeof(cycloid_input))
+  if (out == nullptr || out->struct_bytes < sizeof(cycloid_input))
     return failed(CYCLOID_INVALID, "out: null, or struct_bytes");
   if (seat >= simulation->inputs.size()) return failed(CYCLOID_INVALID, "seat: no such seat");
   return guarded([&] {

@@ -26,7 +26,6 @@ std::unique_ptr<Follower> make_follower(const JoinOptions& options, scenes::Simu
   follower.profile = options.profile;
   follower.predict_ticks = options.predict_ticks;
   follower.one_shot = one_shot_buttons(options.scene);
-  follower.decoder = options.decoder;
   follower.witness = options.witness;
   if (!follower.witness) follower.witness = std::make_shared<Evidence>();
   follower.build = protocol::build_text();
@@ -105,20 +104,20 @@ void Visit::Attempt::receive(const protocol::ServerMessage& message) {
   }
 }
 
-/// Brings predictions up to all that was taken in, then shows it.
+/// Brings predictions up to all that was taken in and to the clock, then shows it.
 void Visit::Attempt::react() {
   if (heard_) follower_->settle();
-  advance();
-  if (heard_ && options_.on_progress) options_.on_progress(*follower_);
+  const bool advanced = advance();
+  if ((heard_ || advanced) && options_.on_progress) options_.on_progress(*follower_);
   heard_ = false;
 }
 
 /// Where frames do not come, the clock goes on for the player: predicts as many ticks as have
-/// passed, until the window is full.
-void Visit::Attempt::advance() {
+/// passed, until the window is full. Whether it did.
+bool Visit::Attempt::advance() {
   const auto now = Clock::now();
   const Progress& progress = follower_->progress();
-  if (options_.predict_ticks == 0 || progress.phase != Phase::kRunning) return;
+  if (options_.predict_ticks == 0 || progress.phase != Phase::kRunning) return false;
   if (progress.last_tick != frame_tick_) {
     frame_tick_ = progress.last_tick;
     frame_at_ = now;
@@ -127,8 +126,10 @@ void Visit::Attempt::advance() {
   const auto waited = std::chrono::duration_cast<std::chrono::microseconds>(now - frame_at_);
   const auto passed = static_cast<std::uint64_t>(waited.count()) *
                       follower_->tick_rate_millihertz() / 1'000'000'000;
+  const std::uint64_t before = advanced_;
   while (advanced_ < passed && follower_->advance(outbox_)) ++advanced_;
   flush();
+  return advanced_ != before;
 }
 
 void Visit::Attempt::on_poll() {

@@ -35,7 +35,7 @@ class Visit::Attempt {
   void greet();
   void receive(const protocol::ServerMessage& message);
   void react();
-  void advance();
+  bool advance();
   void on_poll();
   void flush();
   void leave(End end, const std::string& reason);

@@ -49,7 +49,7 @@ void Connection::connect(const std::string& host, const tcp::resolver::results_t
 
 void Connection::shake_hands(const std::string& host) {
   if (tls_ == nullptr) return opened();
-  tls_->prepare(stream_, host);
+  if (!tls_->prepare(stream_, host)) return close("no name to verify the server by");
   stream_.async_handshake(asio::ssl::stream_base::client, [this](const asio::error_code& failure) {
     if (stage_ == Stage::kClosed) return;
     if (failure) return close(tls_->reason(stream_, failure));

@@ -71,13 +71,16 @@ ClientTls::ClientTls(const TlsTrust& trust)
   context_->set_verify_mode(asio::ssl::verify_peer);
 }
 
-void ClientTls::prepare(Stream& stream, const std::string& host) const {
+bool ClientTls::prepare(Stream& stream, const std::string& host) const {
   SSL* const handle = stream.tls()->native_handle();
   X509_VERIFY_PARAM* const checks = SSL_get0_param(handle);
-  if (X509_VERIFY_PARAM_set1_ip_asc(checks, host.c_str()) == 1) return;
+  // OpenSSL takes an empty name for the wish to check none.
+  if (host.empty()) return pinned_;
+  if (X509_VERIFY_PARAM_set1_ip_asc(checks, host.c_str()) == 1) return true;
   X509_VERIFY_PARAM_set_hostflags(checks, X509_CHECK_FLAG_NO_PARTIAL_WILDCARDS);
-  X509_VERIFY_PARAM_set1_host(checks, host.c_str(), host.size());
+  const bool checked = X509_VERIFY_PARAM_set1_host(checks, host.c_str(), host.size()) == 1;
   SSL_set_tlsext_host_name(handle, host.c_str());
+  return checked || pinned_;
 }
 
 std::string ClientTls::reason(Stream& stream, const asio::error_code& error) const {

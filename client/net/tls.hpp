@@ -28,7 +28,9 @@ class ClientTls {
   transport::Stream::Context context() const { return context_; }
   /// Before the handshake: says and checks the name.
   /// @param host  As it was connected to: a name or an address.
-  void prepare(transport::Stream& stream, const std::string& host) const;
+  /// @returns false where that is no name that a certificate could have, so that nothing would be
+  ///     checked; the handshake must not begin then. A pinned certificate needs no name.
+  [[nodiscard]] bool prepare(transport::Stream& stream, const std::string& host) const;
   /// Why the handshake has failed, for the user.
   std::string reason(transport::Stream& stream, const asio::error_code& error) const;
 

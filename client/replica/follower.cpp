@@ -4,19 +4,13 @@
 #include <utility>
 #include <variant>
 
+#include "protocol/overloaded.hpp"
+
 namespace cycloid::client {
 namespace {
 
 /// A server that asks for more lead than this is not one of ours; it bounds a burst of inputs.
 constexpr std::uint32_t kInputDelayTicksMax = 256;
-
-template <class... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-// Implied by C++20, but Clang before 17 does not know.
-template <class... Handlers>
-Overloaded(Handlers...) -> Overloaded<Handlers...>;
 
 }  // namespace
 
@@ -24,11 +18,7 @@ Follower::Follower(protocol::Mode mode, scenes::Simulation simulation, FollowerO
     : simulation_(std::move(simulation)),
       mode_(mode),
       options_(std::move(options)),
-      assembly_(std::min(options_.snapshot_bytes_max, protocol::kServerMessageBytesMax)) {
-  if (!options_.decoder) {
-    options_.decoder = std::make_shared<DeltaDecoder>(options_.snapshot_bytes_max);
-  }
-}
+      assembly_(std::min(options_.snapshot_bytes_max, protocol::kServerMessageBytesMax)) {}
 
 void Follower::greet(Outbox& out) {
   protocol::Hello hello;
@@ -52,7 +42,7 @@ bool Follower::expect_state(const char* what) {
 
 void Follower::receive(const protocol::ServerMessage& message, Outbox& out) {
   if (progress_.over()) return;
-  const auto handler = Overloaded{
+  const auto handler = protocol::Overloaded{
       [&](const protocol::Welcome& welcome) { on_welcome(welcome); },
       [&](const protocol::Refused& refused) { on_refused(refused); },
       [&](const protocol::InputFrame& frame) {
@@ -146,7 +136,7 @@ void Follower::on_part(const protocol::SnapshotPart& part, Outbox& out) {
 
 void Follower::on_margin(const protocol::Margin& margin) {
   progress_.early_ticks = margin.early_ticks;
-  if (!options_.steer || !seated()) return;
+  if (!seated()) return;
   lead_.take(margin, sent_tick());
   progress_.lead_ticks = lead_.lead_ticks();
 }
@@ -172,21 +162,21 @@ std::optional<std::uint64_t> Follower::assembling_tick() const {
   return assembly_.tick();
 }
 
-bool Follower::load(const protocol::Snapshot& state) {
-  const std::string name = "the snapshot of tick " + std::to_string(state.tick);
-  if (loading() && state.tick < base_tick_) {
+bool Follower::load(std::uint64_t tick, std::uint64_t digest, std::span<const std::byte> state) {
+  const std::string name = "the snapshot of tick " + std::to_string(tick);
+  if (loading() && tick < base_tick_) {
     fail(name + " is older than the one that was announced, of " + std::to_string(base_tick_));
     return false;
   }
-  if (const solver::Error error = simulation_.decode(state.state); !error.ok()) {
+  if (const solver::Error error = simulation_.decode(state); !error.ok()) {
     fail(name + " is corrupt: " + error.field);
     return false;
   }
-  if (simulation_.tick() != state.tick || simulation_.digest() != state.digest) {
+  if (simulation_.tick() != tick || simulation_.digest() != digest) {
     fail(name + " is not of the tick or the digest that it says");
     return false;
   }
-  loaded(state.tick);
+  loaded(tick);
   return true;
 }
 

@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -63,7 +64,7 @@ class Follower {
 
   void fail(std::string reason);
   /// Puts the exact state in place of the world; false, and the session has failed, if it is none.
-  bool load(const protocol::Snapshot& state);
+  bool load(std::uint64_t tick, std::uint64_t digest, std::span<const std::byte> state);
   /// Counts a state of `tick` that was taken in, and is running from now on.
   void loaded(std::uint64_t tick);
   /// Sends my inputs for the ticks up to `last` that were not sent yet, at most `burst` of them.

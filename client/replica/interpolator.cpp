@@ -72,6 +72,7 @@ void Interpolator::add(std::uint64_t tick, std::span<const Pose> poses) {
 std::vector<Pose> Interpolator::at(double tick) const {
   if (states_.empty()) return {};
   const State& newest = states_.back();
+  if (std::isnan(tick)) return newest.poses;
   const auto tick_of = [](const State& state) { return static_cast<double>(state.tick); };
   if (tick >= tick_of(newest)) {
     if (states_.size() == 1) return newest.poses;

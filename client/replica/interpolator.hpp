@@ -36,7 +36,7 @@ class Interpolator {
   /// Between two states positions go straight and rotations the shorter way round, at constant
   /// rates. A body that is in one of the two states alone is shown while the time has not reached
   /// the later one, or from then on. Before the oldest state: that one. Beyond the newest: on by
-  /// the last two, within bounds. Empty where no state is there.
+  /// the last two, within bounds. At no number (NaN): the newest. Empty where no state is there.
   std::vector<scenes::Pose> at(double tick) const;
 
   std::uint64_t newest_tick() const { return states_.empty() ? 0 : states_.back().tick; }

@@ -9,7 +9,7 @@ void LeadController::start(std::uint64_t tick, std::uint32_t delay_ticks) {
   lead_ = std::clamp(delay_ticks, 1u, kLeadTicksMax);
   margin_tick_ = settles_tick_ = tick;
   watch_ticks_ = kWatchTicksMin;
-  watch_again();
+  watching_ = lowered_ = false;
 }
 
 void LeadController::change_delay(std::uint32_t delay_ticks, std::uint64_t sent_tick) {
@@ -30,7 +30,8 @@ void LeadController::take(const protocol::Margin& margin, std::uint64_t sent_tic
   if (early < 1) {
     const std::int32_t by = kEarlyTicksWanted - early;
     const std::int32_t late = std::max(0, -early);
-    watch_ticks_ = std::min(kWatchTicksMax, 2 * watch_ticks_);
+    if (lowered_) watch_ticks_ = std::min(kWatchTicksMax, 2 * watch_ticks_);
+    lowered_ = false;
     // What is sent in one burst to make up for the raise is late too, in part.
     return move(by, sent_tick + static_cast<std::uint64_t>(by + late));
   }
@@ -41,7 +42,9 @@ void LeadController::take(const protocol::Margin& margin, std::uint64_t sent_tic
   }
   watch_worst_ = std::min(watch_worst_, early);
   if (margin.tick - watch_begin_ < watch_ticks_) return;
-  if (watch_worst_ <= kEarlyTicksWanted) return watch_again();
+  watching_ = false;
+  if (watch_worst_ <= kEarlyTicksWanted) return;
+  lowered_ = true;
   move(std::int64_t{kEarlyTicksWanted} - watch_worst_, sent_tick);
 }
 
@@ -51,10 +54,6 @@ void LeadController::move(std::int64_t by_ticks, std::uint64_t settles_tick) {
   if (lead != std::int64_t{lead_}) ++changes_;
   lead_ = static_cast<std::uint32_t>(lead);
   settles_tick_ = settles_tick;
-  watch_again();
-}
-
-void LeadController::watch_again() {
   watching_ = false;
 }
 

@@ -13,8 +13,8 @@ namespace cycloid::client {
 /// A margin speaks of inputs that were sent before it could be heard, so after each change the lead
 /// stands until a margin tells of inputs sent since. It is raised at once when an input came with
 /// less than a tick to spare. It is lowered only by what every input of a watch had to spare, and
-/// each time that this proves wrong the next watch is twice as long: so jitter moves it up soon and
-/// down late. Integers only; no clock: time is the server's ticks.
+/// each time that this proves wrong, by a raise after it, watches are twice as long from then on:
+/// so jitter moves it up soon and down late. Integers only; no clock: time is the server's ticks.
 class LeadController {
  public:
   /// What a lowered or raised lead aims at, and what is left alone: 1 to kEarlyTicksWanted.
@@ -36,13 +36,13 @@ class LeadController {
 
  private:
   void move(std::int64_t by_ticks, std::uint64_t settles_tick);
-  void watch_again();
 
   std::uint32_t delay_ = 0;
   std::uint32_t lead_ = 1;
   std::uint64_t margin_tick_ = 0;   ///< Of the last margin, where the next one's inputs begin.
   std::uint64_t settles_tick_ = 0;  ///< From here on margins tell of the lead as it is now.
   bool watching_ = false;
+  bool lowered_ = false;  ///< Since the last raise.
   std::uint64_t watch_begin_ = 0;
   std::int32_t watch_worst_ = 0;
   std::uint64_t watch_ticks_ = kWatchTicksMin;

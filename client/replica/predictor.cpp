@@ -11,16 +11,14 @@ Predictor::Predictor(scenes::Simulation& simulation, PredictorOptions options)
   slots_.resize(options_.window_ticks + 1);
   last_.resize(static_cast<std::size_t>(simulation_.seats()));
   options_.one_shot.resize(last_.size());
-  reset();
+  reset(false);
 }
 
-void Predictor::reset() {
+void Predictor::reset(bool went_back) {
   const std::uint64_t tick = simulation_.tick();
-  const bool went_back = tick < confirmed_;
-  if (went_back) {
-    said_ = {};
-    std::fill(last_.begin(), last_.end(), scenes::SeatInput{});
-  }
+  if (went_back) said_ = {};
+  // What the others said in a tick that is void says nothing of those that come in its place.
+  if (went_back && tick != confirmed_) std::fill(last_.begin(), last_.end(), scenes::SeatInput{});
   heard_ = went_back ? tick : std::max(heard_, tick);
   highest_ = went_back ? tick : std::max(highest_, tick);
   confirmed_ = reached_ = tick;

@@ -39,9 +39,11 @@ class Predictor {
   /// @pre `simulation` outlives this, and nobody else steps or restores it.
   Predictor(scenes::Simulation& simulation, PredictorOptions options);
 
-  /// The simulation holds another confirmed state now. Predictions begin again from it; what my
-  /// seat has said for later ticks still stands, unless the match has gone back.
-  void reset();
+  /// The simulation holds another confirmed state now, of whatever tick. Predictions begin again
+  /// from it; what my seat has said for later ticks still stands.
+  /// @param went_back  The match has: what was said after that tick was in another history. Else
+  ///     a state from before the confirmed tick is followed by the frames that lead back to it.
+  void reset(bool went_back);
   /// Which seat is mine from now on.
   void sit(std::int32_t seat) { options_.seat = seat; }
   /// What my seat says for `tick`, which is later than any said before.

@@ -8,7 +8,6 @@
 #include <string>
 #include <vector>
 
-#include "client/replica/state_decoder.hpp"
 #include "client/replica/witness.hpp"
 #include "protocol/messages.hpp"
 
@@ -59,7 +58,6 @@ struct FollowerOptions {
   std::string build;              ///< Compiler and flags, for a desync report.
   protocol::Profile profile = protocol::Profile::kExact;
   InputSource input;  ///< Asked once for every tick, in order, when the client has a seat.
-  bool steer = true;  ///< Let the server's margins move the lead; else it is what the server says.
   /// Most ticks beyond the confirmed one that a replica predicts, up to 64; 0: none.
   std::uint32_t predict_ticks = 0;
   /// By seat: buttons that mean something only when they go down, and that no prediction repeats.
@@ -68,8 +66,9 @@ struct FollowerOptions {
   std::uint32_t snapshot_bytes_max = protocol::kServerMessageBytesMax;
   /// Frames that may wait for an exact state that is still on its way: one minute at 60 Hz.
   std::size_t frames_waiting_max = 3600;
-  std::shared_ptr<StateDecoder> decoder;  ///< Where empty: a DeltaDecoder.
-  std::shared_ptr<Witness> witness;       ///< May be none.
+  /// Of the states that a snapshot client keeps for deltas, all together.
+  std::size_t baselines_bytes_max = std::size_t{32} << 20;
+  std::shared_ptr<Witness> witness;  ///< May be none.
   /// Told every notice for the user of the client. May be empty.
   std::function<void(const protocol::RoomNotice&)> on_notice;
   /// Told every confirmed frame, in order, once its tick is made. May be empty.

@@ -49,8 +49,9 @@ bool Replica::can_follow(std::uint64_t tick) {
 }
 
 void Replica::on_exact(const protocol::Snapshot& state, Outbox& out) {
-  if (!can_follow(state.tick) || !load(state)) return;
-  if (predictor_) predictor_->reset();
+  if (!can_follow(state.tick) || !load(state.tick, state.digest, state.state)) return;
+  if (predictor_) predictor_->reset(went_back_);
+  went_back_ = false;
   if (diverged_) ++progress_.resyncs;
   diverged_ = false;
   if (options().witness) options().witness->replaced(simulation_);
@@ -65,7 +66,18 @@ void Replica::on_exact(const protocol::Snapshot& state, Outbox& out) {
   send_inputs(progress_.last_tick + lead(), kBurst, out);
 }
 
+/// A server that could not hand its frames over drops them and begins an exact state in their
+/// place; frames from behind that state on may come between its parts.
+void Replica::skip_to_state_before(std::uint64_t tick) {
+  const auto assembling = assembling_tick();
+  if (!assembling || tick != *assembling + 1 || tick <= newest_tick_ + 1) return;
+  frames_.clear();
+  newest_tick_ = *assembling;
+  progress_.phase = Phase::kLoading;
+}
+
 void Replica::on_frame(const protocol::InputFrame& frame, Outbox& out) {
+  skip_to_state_before(frame.tick);
   const std::uint64_t expected = newest_tick_ + 1;
   if (frame.tick != expected) {
     return fail("a gap: the frame of tick " + std::to_string(frame.tick) + " instead of " +
@@ -131,6 +143,7 @@ void Replica::witness_leaving(Outbox& out) {
 }
 
 void Replica::on_rewound(std::uint64_t tick) {
+  went_back_ = true;
   frames_.clear();
   waiting_.clear();
   newest_tick_ = counted_tick_ = tick;

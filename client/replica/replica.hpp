@@ -17,7 +17,7 @@ namespace cycloid::client {
 /// and once it is whole they are stepped at once. Compares digests of confirmed ticks. A digest of
 /// a tick still to come waits for it (`kDigestsWaitingMax` of them); one of a tick that is gone is
 /// not compared. After a mismatch it goes on by frames until the server's exact state is whole; a
-/// gap between frames ends the session.
+/// gap between frames ends the session, unless an exact state that is on its way fills it.
 class Replica final : public Follower {
  public:
   static constexpr std::size_t kDigestsWaitingMax = 64;
@@ -46,6 +46,7 @@ class Replica final : public Follower {
   void on_said(std::uint64_t tick, const scenes::SeatInput& input) override;
 
   bool can_follow(std::uint64_t tick);
+  void skip_to_state_before(std::uint64_t tick);
   bool step(const protocol::InputFrame& frame, Outbox& out);
   void witness_confirmed();
   void witness_leaving(Outbox& out);
@@ -58,6 +59,7 @@ class Replica final : public Follower {
   std::deque<protocol::Digest> waiting_;     ///< Of the server, ticks ascending.
   std::vector<scenes::SeatInput> inputs_;
   bool diverged_ = false;
+  bool went_back_ = false;  ///< The match has, and the exact state has not come yet.
 };
 
 }  // namespace cycloid::client

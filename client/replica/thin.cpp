@@ -3,14 +3,25 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocol/state/exact_delta.hpp"
+
 namespace cycloid::client {
 
+static protocol::ReceivedLimits limits_of(const FollowerOptions& options) {
+  protocol::ReceivedLimits limits;
+  limits.states_max = Thin::kBaselinesMax;
+  limits.held_bytes_max = options.baselines_bytes_max;
+  limits.exact_bytes_max = options.snapshot_bytes_max;
+  return limits;
+}
+
 Thin::Thin(scenes::Simulation simulation, FollowerOptions options)
-    : Follower(protocol::Mode::kSnapshot, std::move(simulation), std::move(options)) {}
+    : Follower(protocol::Mode::kSnapshot, std::move(simulation), std::move(options)),
+      states_(Follower::options().profile, limits_of(Follower::options())) {}
 
 std::vector<scenes::Pose> Thin::poses() const {
   if (!quantised_) return simulation_.poses();
-  const protocol::QuantisedState& state = baselines_.back().quantised;
+  const protocol::QuantisedState& state = states_.quantised();
   std::vector<scenes::Pose> poses;
   for (const protocol::QuantisedBody& body : state.bodies) {
     poses.push_back(protocol::pose_of(body, state.dimension));
@@ -32,64 +43,50 @@ bool Thin::is_newer(std::uint64_t tick) {
 void Thin::on_exact(const protocol::Snapshot& state, Outbox& out) {
   if (!is_newer(state.tick)) return;
   const std::uint64_t interval = loading() ? 1 : state.tick - progress_.last_tick;
-  if (!load(state)) return;
+  if (!load(state.tick, state.digest, state.state)) return;
   quantised_ = false;
-  DecodedState whole;
-  whole.tick = state.tick;
   // Deltas go on from it in the profile that was asked for.
   const bool exact = options().profile == protocol::Profile::kExact;
-  if (exact) whole.exact = state.state;
-  if (!exact) whole.quantised = protocol::capture(simulation_);
-  keep(std::move(whole), out);
-  const std::uint64_t most = std::clamp<std::uint64_t>(interval, 1, kIntervalTicksMax);
-  send_inputs(state.tick + lead() + most - 1, most + 3, out);
+  if (exact) states_.hold(state.tick, state.state, {});
+  if (!exact) states_.hold(state.tick, {}, protocol::capture(simulation_));
+  took(state.tick, interval, out);
 }
 
-const DecodedState* Thin::find_baseline(std::uint64_t tick) const {
-  for (const DecodedState& state : baselines_)
-    if (state.tick == tick) return &state;
-  return nullptr;
+/// A whole exact state, which a client of either profile may be sent.
+void Thin::take_exact(const protocol::StateDelta& delta, Outbox& out) {
+  auto state = protocol::decode_exact_delta({}, delta.bytes, options().snapshot_bytes_max);
+  if (state) return on_exact({delta.tick, delta.digest, std::move(*state)}, out);
+  fail("the state of tick " + std::to_string(delta.tick) + " is corrupt");
 }
 
 void Thin::on_delta(const protocol::StateDelta& delta, Outbox& out) {
-  const std::string name = "the delta of tick " + std::to_string(delta.tick);
   if (!is_newer(delta.tick)) return;
-  const DecodedState* baseline = find_baseline(delta.baseline_tick);
-  const bool whole = delta.baseline_tick == 0;
-  if (!whole && baseline == nullptr) {
+  const bool exact = delta.profile == protocol::Profile::kExact;
+  if (exact && delta.baseline_tick == 0) return take_exact(delta, out);
+  if (delta.baseline_tick != 0 && !states_.holds(delta.baseline_tick)) {
     ++progress_.deltas_dropped;
     return;
   }
-  DecodedState state;
-  const std::string wrong = options().decoder->decode(delta, whole ? nullptr : baseline, state);
-  if (!wrong.empty()) return fail(name + " is corrupt: " + wrong);
-  // The server builds on what it knows to be here: what is older than that it has let go.
-  while (!baselines_.empty() && baselines_.front().tick < delta.baseline_tick) {
-    baselines_.pop_front();
-  }
-  if (delta.profile == protocol::Profile::kExact) {
-    return on_exact({delta.tick, delta.digest, std::move(state.exact)}, out);
-  }
   const std::uint64_t interval = loading() ? 1 : delta.tick - progress_.last_tick;
-  state.tick = delta.tick;
-  loaded(delta.tick);
-  quantised_ = true;
+  if (const std::string wrong = states_.take(delta); !wrong.empty()) {
+    return fail("the delta of tick " + std::to_string(delta.tick) + " is corrupt: " + wrong);
+  }
+  if (exact && !load(delta.tick, delta.digest, states_.exact())) return;
+  if (!exact) loaded(delta.tick);
+  quantised_ = !exact;
   quantised_digest_ = delta.digest;
-  keep(std::move(state), out);
-  const std::uint64_t most = std::clamp<std::uint64_t>(interval, 1, kIntervalTicksMax);
-  send_inputs(delta.tick + lead() + most - 1, most + 3, out);
+  took(delta.tick, interval, out);
 }
 
-void Thin::keep(DecodedState state, Outbox& out) {
-  out.emplace_back(protocol::Ack{state.tick});
-  if (!baselines_.empty() && baselines_.back().tick == state.tick) baselines_.pop_back();
-  // The first one is what the server builds on now; the others it may choose.
-  if (baselines_.size() >= kBaselinesMax) baselines_.erase(baselines_.begin() + 1);
-  baselines_.push_back(std::move(state));
+/// Acknowledges a state, and sends the inputs of the interval since the one before.
+void Thin::took(std::uint64_t tick, std::uint64_t interval, Outbox& out) {
+  out.emplace_back(protocol::Ack{tick});
+  const std::uint64_t most = std::clamp<std::uint64_t>(interval, 1, kIntervalTicksMax);
+  send_inputs(tick + lead() + most - 1, most + 3, out);
 }
 
 void Thin::on_rewound(std::uint64_t) {
-  baselines_.clear();
+  states_.forget_all();
   quantised_ = false;
 }
 

@@ -40,6 +40,11 @@ LogCursor::Step LogCursor::end(LogState state, const std::string& reason) {
   return Step::kEnd;
 }
 
+/// Of a branch whose first record is not the state that it goes on from.
+std::string LogCursor::no_keyframe() const {
+  return "no keyframe of tick " + std::to_string(branch_tick_) + at_byte(good_bytes_);
+}
+
 LogCursor::Step LogCursor::damaged() {
   const ChunkReader::Behind behind = chunks_.behind();
   tick_behind_ = behind.tick;
@@ -64,6 +69,7 @@ LogCursor::Step LogCursor::next() {
     if (found == Found::kEnd && footed_) return end(LogState::kComplete, "");
     if (found == Found::kEnd) {
       good_bytes_ = chunks_.good();
+      if (branch_tick_ != 0 && !last_digest_) return end(LogState::kTorn, no_keyframe());
       return end(LogState::kOpen, "no footer" + at_byte(good_bytes_));
     }
     if (kind && *kind != chunk.kind)
@@ -82,10 +88,8 @@ LogCursor::Step LogCursor::next() {
 }
 
 LogCursor::Step LogCursor::take(RecordKind kind, std::span<const std::byte> payload) {
-  if (branch_tick_ != 0 && !last_digest_ && kind != RecordKind::kKeyframe) {
-    return end(LogState::kCorrupt,
-               "no keyframe of tick " + std::to_string(branch_tick_) + at_byte(record_at_));
-  }
+  if (branch_tick_ != 0 && !last_digest_ && kind != RecordKind::kKeyframe)
+    return end(LogState::kCorrupt, no_keyframe());
   const Step step = kind == RecordKind::kTick       ? take_tick(payload)
                     : kind == RecordKind::kKeyframe ? take_keyframe(payload)
                                                     : take_footer(payload);

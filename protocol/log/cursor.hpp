@@ -54,6 +54,7 @@ class LogCursor {
 
  private:
   Step end(LogState state, const std::string& reason);
+  std::string no_keyframe() const;
   Step damaged();
   Step take_tick(std::span<const std::byte> payload);
   Step take_keyframe(std::span<const std::byte> payload);

@@ -17,7 +17,7 @@ class LogEncoder {
  public:
   LogEncoder(const LogHeader& header, Bytes& into);
 
-  /// @pre tick.frame.tick is next_tick(), at most kSeatsMax seats and kFrameEventsMax events.
+  /// @pre tick.frame.tick is next_tick(), and the frame is one that a message can carry.
   void tick(const LogTick& tick, Bytes& into);
   /// The exact state after the last tick. @pre the first record of a log with a branch_tick
   void keyframe(std::uint64_t digest, std::span<const std::byte> state, Bytes& into);

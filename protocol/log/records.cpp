@@ -22,7 +22,6 @@ constexpr unsigned kSkipShift = 6;
 constexpr unsigned kManySkipped = 3;  ///< The number follows.
 static_assert(kAllFields < 1u << kSkipShift);
 
-constexpr std::size_t kChangesMax = 1024;
 constexpr std::size_t kPlaceBytes = 20;
 
 /// Seven bits a byte, the lowest first; the top bit says that more come.
@@ -158,12 +157,12 @@ void take_events(LittleReader& reader, InputFrame& frame) {
 
 void take_changes(LittleReader& reader, InputFrame& frame) {
   const std::uint32_t count = take_varint(reader);
-  reader.failed = reader.failed || count == 0 || count > kChangesMax;
+  reader.failed = reader.failed || count == 0 || count > kFrameChangesMax;
   for (std::uint32_t i = 0; i < count && !reader.failed; ++i) {
     FrameChange change;
     change.kind = static_cast<ChangeKind>(reader.take<std::uint8_t>());
     change.value = take_varint(reader);
-    reader.failed = reader.failed || change.kind != ChangeKind::kInputDelay;
+    reader.failed = reader.failed || change.kind != ChangeKind::kInputDelay || change.value == 0;
     frame.changes.push_back(change);
   }
 }

@@ -22,7 +22,7 @@ struct LogHeader {
   std::int64_t start_unix_ns = 0;          ///< When the match began; 0: nobody says.
   std::uint64_t log_id = 0;
   std::uint64_t parent_log_id = 0;  ///< The log that this one goes on from; 0: none.
-  std::uint64_t branch_tick = 0;    ///< Ticks made before; if any, a keyframe of it comes first.
+  std::uint64_t branch_tick = 0;    ///< Ticks made before, below 2^53; if any, a keyframe first.
   std::string build;                ///< Compiler and flags of the writer.
   std::string room;
   std::string scene_name;

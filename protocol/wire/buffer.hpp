@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstring>
 #include <memory>
 #include <optional>
@@ -66,23 +67,32 @@ inline Bytes with_prefix(const Builder& builder) {
   return bytes;
 }
 
-/// The payload at an address where its numbers are aligned, as FlatBuffers reads them in place.
+/// The payload at an address where its numbers are aligned, as FlatBuffers reads them in place. One
+/// lies 4 bytes into what a framer holds, so nearly each is copied: a short one, such as an input,
+/// without an allocation.
 class Aligned {
  public:
   explicit Aligned(std::span<const std::byte> payload)
       : data_(payload.data()), bytes_(payload.size()) {
     if (reinterpret_cast<std::uintptr_t>(data_) % alignof(std::uint64_t) == 0) return;
-    copy_ = std::make_unique<std::uint64_t[]>((bytes_ + 7) / 8);
-    std::memcpy(copy_.get(), data_, bytes_);
-    data_ = reinterpret_cast<const std::byte*>(copy_.get());
+    std::uint64_t* copy = short_.data();
+    if (bytes_ > sizeof short_) {
+      long_ = std::make_unique_for_overwrite<std::uint64_t[]>((bytes_ + 7) / 8);
+      copy = long_.get();
+    }
+    std::memcpy(copy, data_, bytes_);
+    data_ = reinterpret_cast<const std::byte*>(copy);
   }
+  Aligned(const Aligned&) = delete;
+  Aligned& operator=(const Aligned&) = delete;
   const std::uint8_t* data() const { return reinterpret_cast<const std::uint8_t*>(data_); }
   std::size_t size() const { return bytes_; }
 
  private:
   const std::byte* data_;
   std::size_t bytes_;
-  std::unique_ptr<std::uint64_t[]> copy_;
+  std::array<std::uint64_t, 32> short_;  ///< Set where it is used.
+  std::unique_ptr<std::uint64_t[]> long_;
 };
 
 template <class Root>
@@ -163,6 +173,27 @@ inline bool part_fits(std::uint32_t total_bytes, std::uint32_t offset, std::size
 
 inline bool is_profile(Profile profile) {
   return profile == Profile::kExact || profile == Profile::kQuantised;
+}
+
+// What both directions say.
+
+inline flatbuffers::Offset<void> build(const Digest& digest, Builder& to) {
+  return wire::CreateDigest(to, digest.tick, digest.digest).Union();
+}
+
+inline flatbuffers::Offset<void> build(const Bye& bye, Builder& to) {
+  const auto reason = reason_of(bye.reason, to);
+  return wire::CreateBye(to, reason).Union();
+}
+
+inline std::optional<Digest> read(const wire::Digest& from, std::string&) {
+  return Digest{from.tick(), from.digest()};
+}
+
+inline std::optional<Bye> read(const wire::Bye& from, std::string& error) {
+  Bye bye;
+  if (!read_text(from.reason(), kReasonBytesMax, "a reason", bye.reason, error)) return {};
+  return bye;
 }
 
 }  // namespace cycloid::protocol::wire_buffer

@@ -4,6 +4,9 @@
 namespace cycloid::protocol {
 namespace {
 
+using wire_buffer::build;
+using wire_buffer::read;
+
 using namespace wire_buffer;
 
 flatbuffers::Offset<void> build(const Hello& hello, Builder& to) {
@@ -24,17 +27,8 @@ flatbuffers::Offset<void> build(const Input& input, Builder& to) {
   return wire::CreateInput(to, input.tick, &said).Union();
 }
 
-flatbuffers::Offset<void> build(const Digest& digest, Builder& to) {
-  return wire::CreateDigest(to, digest.tick, digest.digest).Union();
-}
-
 flatbuffers::Offset<void> build(const Ping& ping, Builder& to) {
   return wire::CreatePing(to, ping.token).Union();
-}
-
-flatbuffers::Offset<void> build(const Bye& bye, Builder& to) {
-  const auto reason = reason_of(bye.reason, to);
-  return wire::CreateBye(to, reason).Union();
 }
 
 flatbuffers::Offset<void> build(const Ack& ack, Builder& to) {
@@ -84,18 +78,8 @@ std::optional<Input> read(const wire::Input& from, std::string& error) {
   return Input{from.tick(), from_wire(*from.input())};
 }
 
-std::optional<Digest> read(const wire::Digest& from, std::string&) {
-  return Digest{from.tick(), from.digest()};
-}
-
 std::optional<Ping> read(const wire::Ping& from, std::string&) {
   return Ping{from.token()};
-}
-
-std::optional<Bye> read(const wire::Bye& from, std::string& error) {
-  Bye bye;
-  if (!read_text(from.reason(), kReasonBytesMax, "a reason", bye.reason, error)) return {};
-  return bye;
 }
 
 std::optional<Ack> read(const wire::Ack& from, std::string&) {

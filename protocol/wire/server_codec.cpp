@@ -1,8 +1,12 @@
 #include "protocol/schema/server_message_generated.h"
 #include "protocol/wire/buffer.hpp"
+#include "protocol/wire/packed_frame.hpp"
 
 namespace cycloid::protocol {
 namespace {
+
+using wire_buffer::build;
+using wire_buffer::read;
 
 using namespace wire_buffer;
 
@@ -46,17 +50,8 @@ flatbuffers::Offset<void> build(const Snapshot& snapshot, Builder& to) {
   return wire::CreateSnapshot(to, snapshot.tick, snapshot.digest, state).Union();
 }
 
-flatbuffers::Offset<void> build(const Digest& digest, Builder& to) {
-  return wire::CreateDigest(to, digest.tick, digest.digest).Union();
-}
-
 flatbuffers::Offset<void> build(const Pong& pong, Builder& to) {
   return wire::CreatePong(to, pong.token, pong.tick).Union();
-}
-
-flatbuffers::Offset<void> build(const Bye& bye, Builder& to) {
-  const auto reason = reason_of(bye.reason, to);
-  return wire::CreateBye(to, reason).Union();
 }
 
 flatbuffers::Offset<void> build(const SnapshotPart& part, Builder& to) {
@@ -185,6 +180,12 @@ std::optional<InputFrame> read(const wire::InputFrame& from, std::string& error)
   return frame;
 }
 
+std::optional<InputFrame> read(const wire::PackedFrame& from, std::string& error) {
+  if (from.bytes() == nullptr) return refuse<InputFrame>(error, "a packed frame of nothing");
+  const auto* bytes = reinterpret_cast<const std::byte*>(from.bytes()->data());
+  return unpack_frame({bytes, from.bytes()->size()}, error);
+}
+
 std::optional<Snapshot> read(const wire::Snapshot& from, std::string& error) {
   Snapshot snapshot{from.tick(), from.digest(), {}};
   if (!read_bytes(from.state(), kServerMessageBytesMax, "a state", snapshot.state, error))
@@ -192,18 +193,8 @@ std::optional<Snapshot> read(const wire::Snapshot& from, std::string& error) {
   return snapshot;
 }
 
-std::optional<Digest> read(const wire::Digest& from, std::string&) {
-  return Digest{from.tick(), from.digest()};
-}
-
 std::optional<Pong> read(const wire::Pong& from, std::string&) {
   return Pong{from.token(), from.tick()};
-}
-
-std::optional<Bye> read(const wire::Bye& from, std::string& error) {
-  Bye bye;
-  if (!read_text(from.reason(), kReasonBytesMax, "a reason", bye.reason, error)) return {};
-  return bye;
 }
 
 std::optional<SnapshotPart> read(const wire::SnapshotPart& from, std::string& error) {
@@ -268,6 +259,18 @@ Bytes encode(const ServerMessage& message) {
   return with_prefix(builder);
 }
 
+Bytes encode_packed(const InputFrame& frame) {
+  Bytes packed;
+  packed.reserve(16 + 4 * frame.seats.size());
+  pack_frame(frame, packed);
+  Builder builder(256);
+  const auto bytes = bytes_of(packed, builder);
+  const auto body = wire::CreatePackedFrame(builder, bytes).Union();
+  const auto root = wire::CreateServerMessage(builder, wire::ServerBody::PackedFrame, body);
+  wire::FinishServerMessageBuffer(builder, root);
+  return with_prefix(builder);
+}
+
 Decoded<ServerMessage> decode_server(std::span<const std::byte> payload) {
   Decoded<ServerMessage> decoded;
   if (!fits(payload.size(), kServerMessageBytesMax, decoded.error)) return decoded;
@@ -311,6 +314,9 @@ Decoded<ServerMessage> decode_server(std::span<const std::byte> payload) {
       break;
     case wire::ServerBody::RoomNotice:
       take(root->body_as_RoomNotice(), decoded);
+      break;
+    case wire::ServerBody::PackedFrame:
+      take(root->body_as_PackedFrame(), decoded);
       break;
     default:
       decoded.error = "a body of an unknown type";

@@ -121,6 +121,8 @@ static Scene method_scene(const std::string& method, const Tuning& tuning) {
 std::vector<Scene> method_scenes() {
   Tuning coupled = Tuning::soft_step();
   coupled.contact_block = solver::ContactBlockRows::kNormalFriction;
+  Tuning islands = Tuning::soft_step();
+  islands.contact_block = solver::ContactBlockRows::kIsland;
   const std::pair<const char*, Tuning> methods[] = {
       {"pgs", Tuning::pgs()},
       {"split-impulse", Tuning::split_impulse()},
@@ -130,9 +132,15 @@ std::vector<Scene> method_scenes() {
       {"tgs-ngs", Tuning::tgs_ngs()},
       {"xpbd", Tuning::xpbd().in_substeps(16)},
       {"coupled", coupled},
+      {"islands", islands},
   };
   std::vector<Scene> scenes;
   for (const auto& [name, tuning] : methods) scenes.push_back(method_scene(name, tuning));
+  // In space for this one alone: the others' rows there are those of scenes of their own.
+  scenes.push_back(arch_3d(9));
+  scenes.back().name = "method-islands-3d";
+  scenes.back().summary = "An arch of nine stones under islands; a seat throws balls.";
+  scenes.back().tuning = islands;
   return scenes;
 }
 

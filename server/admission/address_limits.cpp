@@ -21,6 +21,12 @@ std::string too_fast(const Rate& rate, const std::string& from) {
 AddressLimits::AddressLimits(const AddressLimitOptions& options, std::int64_t now_ns)
     : options_(options), all_connects_(options.all_connects, now_ns) {}
 
+void AddressLimits::set_limits(const AddressLimitOptions& limits) {
+  options_.host_connections_max = limits.host_connections_max;
+  options_.network_connections_max = limits.network_connections_max;
+  options_.host_pending_max = limits.host_pending_max;
+}
+
 bool AddressLimits::make_room(std::int64_t now_ns) {
   if (entries() + 2 <= options_.entries_max) return true;
   if (now_ns < next_sweep_ns_) return false;

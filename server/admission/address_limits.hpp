@@ -30,6 +30,8 @@ class AddressLimits {
  public:
   explicit AddressLimits(const AddressLimitOptions& options, std::int64_t now_ns = 0);
 
+  /// Takes the bounds of connections; rates stay, and so does who is in.
+  void set_limits(const AddressLimitOptions& limits);
   /// A connection was accepted. "" and it is counted as open and pending, or the reason of a
   /// kRateLimited refusal and nothing is counted.
   std::string open(const PeerAddress& address, std::int64_t now_ns);

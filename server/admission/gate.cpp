@@ -77,6 +77,12 @@ Gate::Gate(GateOptions options, FindRoom find_room)
       nonces_(options_.nonces_max),
       addresses_(options_.addresses) {}
 
+void Gate::set_limits(const GateOptions& limits) {
+  options_.connections_max = limits.connections_max;
+  options_.pending_max = limits.pending_max;
+  addresses_.set_limits(limits.addresses);
+}
+
 std::string Gate::full(const PeerAddress& address, std::int64_t now_ns) {
   if (open_.size() >= options_.connections_max)
     return std::to_string(options_.connections_max) + " connections are open, no more may be";

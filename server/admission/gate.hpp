@@ -113,6 +113,8 @@ class Gate {
 
   /// From now on nobody comes in; those in the gate are refused with kDraining at their hello.
   void drain(const std::string& reason) { draining_ = reason; }
+  /// Takes the bounds of connections, of those that wait, and of addresses; those who are in stay.
+  void set_limits(const GateOptions& limits);
   /// Rotates the keys; tokens that were used stay used.
   void set_keys(std::vector<PublicKey> keys) { verifier_.set_keys(std::move(keys)); }
 

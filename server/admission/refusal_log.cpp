@@ -2,6 +2,7 @@
 
 #include <array>
 
+#include "protocol/text.hpp"
 #include "protocol/utf8.hpp"
 
 namespace cycloid::server {
@@ -47,27 +48,11 @@ RefusalLog::Line RefusalLog::note(protocol::Refusal code, const PeerAddress& add
   return line;
 }
 
-const char* refusal_name(protocol::Refusal code) {
-  static constexpr std::array kNames = {
-      "kProtocolVersion", "kSolverVersion", "kSceneDigest",  "kSeatTaken", "kNoSuchSeat",
-      "kRoomFull",        "kBadMessage",    "kTooLarge",     "kTooSlow",   "kDraining",
-      "kFaulted",         "kTokenInvalid",  "kTokenExpired", "kTokenUsed", "kTokenScope",
-      "kNoSuchRoom",      "kRoomLocked",    "kRateLimited",  "kKicked",    "kReplaced",
-      "kResumeUnknown",   "kResyncLimit",
-  };
-  static_assert(kNames.size() == static_cast<std::size_t>(protocol::kLastRefusal));
-  const auto number = static_cast<std::size_t>(code);
-  return number >= 1 && number <= kNames.size() ? kNames[number - 1] : "an unknown code";
-}
-
 std::string refusal_line(protocol::Refusal code, const std::string& reason,
                          const PeerAddress& address, std::uint64_t suppressed) {
-  std::string said = protocol::cut_utf8(reason, kLineReasonBytesMax);
-  for (char& letter : said) {
-    // A peer's own words come back in some reasons; they begin no line and move no cursor.
-    if (static_cast<unsigned char>(letter) < 0x20 || letter == 0x7f) letter = '?';
-  }
-  std::string line = "refused " + address.text() + ": " + refusal_name(code) + " (" +
+  // A peer's own words come back in some reasons.
+  const std::string said = protocol::printable(protocol::cut_utf8(reason, kLineReasonBytesMax));
+  std::string line = "refused " + address.text() + ": " + protocol::refusal_name(code) + " (" +
                      std::to_string(static_cast<int>(code)) + "): " + said;
   if (suppressed > 0) line += " (and " + std::to_string(suppressed) + " more since)";
   return line;

@@ -53,7 +53,4 @@ class RefusalLog {
 std::string refusal_line(protocol::Refusal code, const std::string& reason,
                          const PeerAddress& address, std::uint64_t suppressed);
 
-/// "kTokenExpired"; "an unknown code" for a number that is none.
-const char* refusal_name(protocol::Refusal code);
-
 }  // namespace cycloid::server

@@ -20,7 +20,8 @@ void check_address(const std::string& key, const std::string& text, const Compla
 
 void check_admin(ServerConfig& config, const Complain& complain) {
   const std::string& directory = config.snapshot_directory;
-  if (!directory.empty() && !std::filesystem::is_directory(directory)) {
+  std::error_code unknown;  // What may not be looked at is no directory for us.
+  if (!directory.empty() && !std::filesystem::is_directory(directory, unknown)) {
     complain("admin.snapshot_directory", directory + " is no directory");
   }
   if (config.admin_token_file.empty()) return;
@@ -29,7 +30,6 @@ void check_admin(ServerConfig& config, const Complain& complain) {
   admin.token = read_admin_token(config.admin_token_file, mistake);
   if (!mistake.empty()) complain("admin.token_file", mistake);
   admin.snapshot_directory = directory;
-  admin.drain = config.host.drain;
   config.operation.admin = std::move(admin);
   if (!config.operation_on) complain("admin.token_file", "operation.enabled is false");
   asio::error_code error;
@@ -42,6 +42,11 @@ void check_admin(ServerConfig& config, const Complain& complain) {
 }
 
 void check_rooms(const ServerConfig& config, const Complain& complain) {
+  for (const auto& [name, of] : config.host.templates) {
+    if (!of.on_first_join || of.settings.empty_ttl.count() > 0) continue;
+    complain("template." + name + ".empty_ttl_s",
+             "with on_first_join anybody makes rooms, so they must end when they are empty");
+  }
   const auto joins = [](const auto& named) { return named.second.on_first_join; };
   const bool made_later = std::ranges::any_of(config.host.templates, joins) ||
                           (config.operation.admin && !config.host.templates.empty());

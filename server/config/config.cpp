@@ -6,13 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <fstream>
-#include <iterator>
 #include <set>
 #include <utility>
 
 #include "server/config/checks.hpp"
 #include "server/config/keys.hpp"
+#include "server/operation/text_file.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -248,7 +247,8 @@ class Reader {
       read_table(&value, path, config_template_keys(), made);
       load_scene(made, path, line_of(value));
       const std::string& directory = made.settings.log_directory;
-      if (!directory.empty() && !std::filesystem::is_directory(directory)) {
+      std::error_code unknown;  // A name that is too long is no directory either.
+      if (!directory.empty() && !std::filesystem::is_directory(directory, unknown)) {
         complain(lines_[path + ".log_directory"], path + ".log_directory",
                  directory + " is no directory");
       }
@@ -332,9 +332,7 @@ ConfigResult read_config(std::string_view text, const SceneLoader& load_scene) {
 }
 
 ConfigResult read_config_file(const std::string& path, const SceneLoader& load_scene) {
-  std::ifstream stream(path, std::ios::binary);
-  const std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (stream) return read_config(text, load_scene);
+  if (const auto text = read_text_file(path)) return read_config(*text, load_scene);
   ConfigResult result;
   result.mistakes.push_back({0, "", "the file cannot be read"});
   return result;

@@ -150,29 +150,28 @@ ConfigKey<RoomTemplate> key(const char* name, Kind kind, KeyRange range, const c
 /// What the match is, and what is left of it.
 TemplateKeys match_keys() {
   using T = RoomTemplate;
-  return {key("scene", Kind::kNeededText, {0, 0}, "", {},
-              [](T& t, const Value& v) { t.settings.scene_name = v.text; }),
-          key("on_first_join", Kind::kFlag, {0, 0}, "false", {},
-              [](T& t, const Value& v) { t.on_first_join = v.flag; }),
-          key("empty_ttl_s", Kind::kInteger, {0, kManySeconds}, "0", {},
-              [](T& t, const Value& v) { t.settings.empty_ttl = std::chrono::seconds(v.integer); }),
-          key("tick_rate_hz", Kind::kNumber, {0, 10000}, "0", {},
-              [](T& t, const Value& v) {
-                t.settings.tick_rate_millihertz =
-                    static_cast<std::uint32_t>(std::lround(v.number * 1000.0));
-              }),
-          key("ticks", Kind::kInteger, {0, 1e15}, "0", {},
-              [](T& t, const Value& v) { t.settings.ticks = as<std::uint64_t>(v); }),
-          key("workers", Kind::kInteger, {1, 64}, "1", {},
-              [](T& t, const Value& v) { t.settings.workers = as<int>(v); }),
-          key("log_directory", Kind::kText, {0, 0}, "", {},
-              [](T& t, const Value& v) { t.settings.log_directory = v.text; }),
-          key("log_sync", Kind::kText, {0, 0}, "interval", {"interval", "tick"},
-              [](T& t, const Value& v) {
-                t.settings.log_sync = v.text == "tick" ? LogSync::kEveryTick : LogSync::kInterval;
-              }),
-          key("stop_on_log_error", Kind::kFlag, {0, 0}, "false", {},
-              [](T& t, const Value& v) { t.settings.stop_on_log_error = v.flag; })};
+  return {
+      key("scene", Kind::kNeededText, {0, 0}, "", {},
+          [](T& t, const Value& v) { t.settings.scene_name = v.text; }),
+      key("on_first_join", Kind::kFlag, {0, 0}, "false", {},
+          [](T& t, const Value& v) { t.on_first_join = v.flag; }),
+      key("empty_ttl_s", Kind::kInteger, {0, kManySeconds}, "0", {},
+          [](T& t, const Value& v) { t.settings.empty_ttl = std::chrono::seconds(v.integer); }),
+      key("tick_rate_hz", Kind::kNumber, {0, 10000}, "0", {},
+          [](T& t, const Value& v) {
+            t.settings.tick_rate_millihertz =
+                static_cast<std::uint32_t>(std::lround(v.number * 1000.0));
+          }),
+      key("ticks", Kind::kInteger, {0, 1e15}, "0", {},
+          [](T& t, const Value& v) { t.settings.ticks = as<std::uint64_t>(v); }),
+      key("workers", Kind::kInteger, {1, 64}, "1", {},
+          [](T& t, const Value& v) { t.settings.workers = as<int>(v); }),
+      key("log_directory", Kind::kText, {0, 0}, "", {},
+          [](T& t, const Value& v) { t.settings.log_directory = v.text; }),
+      key("log_sync", Kind::kText, {0, 0}, "interval", {kLogSyncNames.begin(), kLogSyncNames.end()},
+          [](T& t, const Value& v) { t.settings.log_sync = log_sync_of(v.text); }),
+      key("stop_on_log_error", Kind::kFlag, {0, 0}, "false", {},
+          [](T& t, const Value& v) { t.settings.stop_on_log_error = v.flag; })};
 }
 
 /// What becomes of inputs that are not there.

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <chrono>
 
 #include "server/config/key_makers.hpp"
@@ -18,17 +19,21 @@ using Keys = std::vector<ConfigKey<ServerConfig>>;
 Keys process_limits() {
   using C = ServerConfig;
   return {
-      integer("connections", 1, 1000000, "16384", false,
+      integer("connections", 1, 1000000, "16384", true,
               [](C& c, const Value& v) { c.host.gate.connections_max = as<std::size_t>(v); }),
-      integer("pending", 1, 1000000, "12000", false,
+      integer("pending", 1, 1000000, "12000", true,
               [](C& c, const Value& v) { c.host.gate.pending_max = as<std::size_t>(v); }),
       integer("hello_ms", 1, 600000, "5000", false,
               [](C& c, const Value& v) { c.host.gate.hello_deadline_ns = v.integer * 1'000'000; }),
-      integer("address_connections", 1, 1000000, "64", false,
+      integer("address_connections", 1, 1000000, "64", true,
               [](C& c, const Value& v) {
-                c.host.gate.addresses.host_connections_max = as<std::uint32_t>(v);
+                AddressLimitOptions& addresses = c.host.gate.addresses;
+                addresses.host_connections_max = as<std::uint32_t>(v);
+                // A host is part of its network, which has room for one such host at least.
+                addresses.network_connections_max =
+                    std::max(AddressLimitOptions{}.network_connections_max, as<std::uint32_t>(v));
               }),
-      integer("address_pending", 1, 1000000, "16", false,
+      integer("address_pending", 1, 1000000, "16", true,
               [](C& c, const Value& v) {
                 c.host.gate.addresses.host_pending_max = as<std::uint32_t>(v);
               }),

@@ -20,7 +20,12 @@ class Reloader {
   /// Any thread. The host must be there when it is called.
   ActResult reload(Host& host) {
     const std::lock_guard lock(mutex_);
-    ActResult result = take(host);
+    ActResult result;
+    try {
+      result = take(host);
+    } catch (const std::exception& error) {  // A mistake in a file ends no match.
+      result = {kMistaken, error.what()};
+    }
     if (result.ok()) host.logger()->info("reloaded {}", server_.file);
     if (!result.ok()) host.logger()->error("not reloaded, nothing is changed: {}", result.text);
     return result;
@@ -42,7 +47,12 @@ class Reloader {
     if (std::string why = tls == nullptr ? "" : tls->reload(); !why.empty()) {
       return {kMistaken, "tls.certificate_file: " + why};
     }
+    if (tls != nullptr) {
+      host.logger()->info("certificate {} until Unix second {}", tls->fingerprint(),
+                          tls->expires_unix_s());
+    }
     host.set_limits(wanted.host.limits);
+    host.set_gate_limits(wanted.host.gate);
     host.set_token_keys(wanted.host.gate.keys);
     host.set_drain(wanted.host.drain);
     host.logger()->set_level(spdlog::level::from_str(wanted.log_level));
@@ -59,7 +69,6 @@ class Reloader {
 HostReport run_configured(ConfiguredServer server,
                           const std::function<void(const ListeningAt&)>& on_listening,
                           std::stop_token stop) {
-  if (server.override_config) server.override_config(server.config);
   Reloader reloader(server);
   Host* running = nullptr;
   HostOptions options = server.config.host;

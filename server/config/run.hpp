@@ -13,7 +13,8 @@ struct ConfiguredServer {
   ServerConfig config;
   std::string file;        ///< "": it cannot be.
   SceneLoader load_scene;  ///< For reading it again.
-  /// What the command line says against the file, now and after each reload. May be empty.
+  /// What the command line says against the file, after each reload; `config` has it already. May
+  /// be empty.
   std::function<void(ServerConfig&)> override_config;
 };
 

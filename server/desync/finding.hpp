@@ -2,15 +2,22 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
 #include "protocol/log_format.hpp"
 #include "scenes/scene.hpp"
-#include "server/desync/history.hpp"
 #include "server/room/seats.hpp"
 
 namespace cycloid::server {
+
+/// The exact state of the server after a tick, as it was in its memory.
+struct KeptState {
+  std::uint64_t tick = 0;
+  std::uint64_t digest = 0;
+  std::shared_ptr<const std::vector<std::byte>> state;  ///< Simulation::encode; never empty.
+};
 
 /// A lockstep client as a report names it.
 struct ClientIdentity {

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/desync/report.hpp"
+
 namespace cycloid::server {
 namespace {
 
@@ -10,35 +12,46 @@ constexpr std::int64_t kHourNs = 3'600'000'000'000;
 /// Ticks whose votes are kept, and replicas that may vote: far beyond what a room has.
 constexpr std::size_t kVoteTicksKept = 8;
 constexpr std::size_t kVotersMax = 4096;
-/// Inputs that a report shows on each side of its tick.
-constexpr std::uint64_t kTicksAround = 8;
+
+std::optional<KeptState> kept(const std::shared_ptr<const ExactState>& state) {
+  if (state == nullptr) return std::nullopt;
+  return KeptState{state->tick(), state->digest(), {state, &state->bytes()}};
+}
+
+/// Of the ticks first, ..., last, as far as they are kept.
+std::vector<protocol::LogTick> kept_ticks(const RoomEvidence& evidence, std::uint64_t first,
+                                          std::uint64_t last) {
+  std::vector<protocol::LogTick> found;
+  for (std::uint64_t tick = first; tick <= last; ++tick) {
+    const protocol::InputFrame* frame = evidence.frame_at(tick);
+    if (frame != nullptr) found.push_back({*frame, *evidence.digest_at(tick)});
+  }
+  return found;
+}
+
+/// At once, because what is kept moves on while the client answers.
+void capture(std::uint64_t tick, const RoomEvidence& evidence, Finding& finding) {
+  finding.tick = tick;
+  finding.start = tick == 0 ? std::nullopt : kept(evidence.state_at_or_before(tick - 1));
+  finding.later = kept(evidence.state_from(tick));
+  const std::uint64_t last = std::max(tick, finding.noticed_tick) + kReportInputTicks;
+  const std::uint64_t first = tick > kReportInputTicks ? tick - kReportInputTicks : 1;
+  finding.ticks =
+      kept_ticks(evidence, finding.start ? std::min(finding.start->tick, first) : first, last);
+}
 
 }  // namespace
 
-void DesyncDesk::start(const scenes::Simulation& simulation) {
-  history_.start(simulation);
-  votes_.clear();
-  for (auto& [peer, inquiry] : inquiries_)
-    if (inquiry.stage != Stage::kDone) give_up(inquiry, "the match was taken back meanwhile");
-}
-
-void DesyncDesk::on_tick(const protocol::InputFrame& frame, std::uint64_t digest,
-                         const scenes::Simulation& simulation) {
-  if (frame.tick != history_.last_tick() + 1) return start(simulation);
-  history_.add(frame, digest, simulation);
-}
-
 void DesyncDesk::on_digest(PeerId peer, std::uint64_t tick, std::uint64_t digest) {
-  if (!history_.digest(tick)) return;
   auto& voters = votes_[tick];
   if (voters.size() < kVotersMax) voters.try_emplace(peer, digest);
   if (votes_.size() > kVoteTicksKept) votes_.erase(votes_.begin());
 }
 
-ReplicaVotes DesyncDesk::votes(std::uint64_t tick) const {
+ReplicaVotes DesyncDesk::votes(std::uint64_t tick, const RoomEvidence& evidence) const {
   ReplicaVotes votes;
   const auto voters = votes_.find(tick);
-  const auto mine = history_.digest(tick);
+  const auto mine = evidence.digest_at(tick);
   if (voters == votes_.end() || !mine) return votes;
   std::map<std::uint64_t, std::uint32_t> counts;
   for (const auto& [peer, digest] : voters->second) ++counts[digest];
@@ -65,8 +78,8 @@ bool DesyncDesk::within_rate(std::int64_t now_ns) {
 }
 
 bool DesyncDesk::on_mismatch(const ClientIdentity& client, const protocol::Digest& said,
-                             std::int64_t now_ns) {
-  const auto mine = history_.digest(said.tick);
+                             std::int64_t now_ns, const RoomEvidence& evidence) {
+  const auto mine = evidence.digest_at(said.tick);
   if (!mine || *mine == said.digest) return false;
   if (inquiries_.contains(client.peer)) return false;
   if (inquiries_.size() >= options_.inquiries_max || !within_rate(now_ns)) {
@@ -79,22 +92,11 @@ bool DesyncDesk::on_mismatch(const ClientIdentity& client, const protocol::Diges
   inquiry.finding.room = room_;
   inquiry.finding.client = client;
   inquiry.finding.noticed_tick = said.tick;
-  inquiry.finding.votes = votes(said.tick);
+  inquiry.finding.votes = votes(said.tick, evidence);
   inquiry.finding.server_digest = *mine;
   inquiry.finding.client_digest = said.digest;
-  capture(said.tick, inquiry.finding);
+  capture(said.tick, evidence, inquiry.finding);
   return true;
-}
-
-/// At once, because what is kept moves on while the client answers.
-void DesyncDesk::capture(std::uint64_t tick, Finding& finding) const {
-  finding.tick = tick;
-  finding.start = history_.before(tick);
-  finding.later = history_.from(tick);
-  const std::uint64_t last = std::max(tick, finding.noticed_tick) + kTicksAround;
-  const std::uint64_t first = tick > kTicksAround ? tick - kTicksAround : 1;
-  finding.ticks =
-      history_.ticks(finding.start ? std::min(finding.start->tick, first) : first, last);
 }
 
 DesyncDesk::Inquiry* DesyncDesk::asked(PeerId peer, Stage stage) {
@@ -111,7 +113,7 @@ void DesyncDesk::give_up(Inquiry& inquiry, std::string why) {
 }
 
 std::optional<protocol::StateWanted> DesyncDesk::on_tick_digests(
-    PeerId peer, const protocol::TickDigests& digests) {
+    PeerId peer, const protocol::TickDigests& digests, const RoomEvidence& evidence) {
   Inquiry* inquiry = asked(peer, Stage::kDigests);
   if (inquiry == nullptr) return std::nullopt;
   const std::uint64_t last = inquiry->finding.noticed_tick;
@@ -123,10 +125,10 @@ std::optional<protocol::StateWanted> DesyncDesk::on_tick_digests(
   }
   for (std::size_t i = 0; i < digests.digests.size(); ++i) {
     const std::uint64_t tick = digests.first_tick + i;
-    const auto mine = history_.digest(tick);
+    const auto mine = evidence.digest_at(tick);
     if (!mine) continue;
     if (*mine != digests.digests[i]) {
-      differs_at(tick, *mine, digests.digests[i], *inquiry);
+      differs_at({tick, digests.digests[i]}, *mine, evidence, *inquiry);
       return protocol::StateWanted{tick};
     }
     inquiry->equal_tick = tick;
@@ -136,20 +138,24 @@ std::optional<protocol::StateWanted> DesyncDesk::on_tick_digests(
   return std::nullopt;
 }
 
-void DesyncDesk::differs_at(std::uint64_t tick, std::uint64_t mine, std::uint64_t theirs,
-                            Inquiry& inquiry) {
+void DesyncDesk::differs_at(const protocol::Digest& said, std::uint64_t mine,
+                            const RoomEvidence& evidence, Inquiry& inquiry) {
+  const std::uint64_t tick = said.tick;
   inquiry.stage = Stage::kState;
   inquiry.finding.is_first = tick == 1 || (inquiry.equal_tick && *inquiry.equal_tick + 1 == tick);
   inquiry.finding.server_digest = mine;
-  inquiry.finding.client_digest = theirs;
-  capture(tick, inquiry.finding);
+  inquiry.finding.client_digest = said.digest;
+  capture(tick, evidence, inquiry.finding);
 }
 
-void DesyncDesk::on_state_part(PeerId peer, const protocol::StatePart& part) {
+void DesyncDesk::on_state_part(PeerId peer, const protocol::StatePart& part,
+                               const RoomEvidence& evidence) {
   Inquiry* inquiry = asked(peer, Stage::kState);
   if (inquiry == nullptr) return;
   std::vector<std::byte>& state = inquiry->finding.client_state;
-  const std::size_t most = 2 * history_.newest_bytes() + options_.state_slack_bytes;
+  const auto newest = evidence.state_at_or_before(evidence.tick());
+  const std::size_t newest_bytes = newest == nullptr ? 0 : newest->bytes().size();
+  const std::size_t most = 2 * newest_bytes + options_.state_slack_bytes;
   if (part.tick != inquiry->finding.tick)
     return give_up(*inquiry, "it sent its state of tick " + std::to_string(part.tick));
   if (part.total_bytes == 0 || part.total_bytes > most) {
@@ -174,7 +180,7 @@ void DesyncDesk::on_leave(PeerId peer) {
   give_up(found->second, "it left before it had sent its state");
 }
 
-std::vector<Finding> DesyncDesk::take_findings(std::int64_t now_ns, std::size_t replicas) {
+std::vector<Finding> DesyncDesk::take_findings(std::int64_t now_ns, const RoomEvidence& evidence) {
   std::vector<Finding> findings;
   for (auto at = inquiries_.begin(); at != inquiries_.end();) {
     Inquiry& inquiry = at->second;
@@ -183,31 +189,46 @@ std::vector<Finding> DesyncDesk::take_findings(std::int64_t now_ns, std::size_t 
       give_up(inquiry, inquiry.stage == Stage::kDigests ? "it did not say which ticks differ"
                                                         : "it did not send its state in time");
     }
-    const ReplicaVotes now = votes(inquiry.finding.noticed_tick);
-    if (now.replicas >= inquiry.finding.votes.replicas) inquiry.finding.votes = now;
-    const bool counted = inquiry.finding.votes.replicas >= replicas;
-    const bool around = history_.digest(inquiry.finding.tick + kTicksAround).has_value();
-    const bool waits = !(counted && around) && open_ns < options_.votes_wait.count();
-    if (inquiry.stage != Stage::kDone || waits) {
+    recount(inquiry, evidence);
+    if (inquiry.stage != Stage::kDone || open_ns < options_.votes_wait.count()) {
       ++at;
       continue;
     }
-    findings.push_back(finish(inquiry));
+    findings.push_back(finish(inquiry, evidence));
     at = inquiries_.erase(at);
   }
   return findings;
 }
 
+std::vector<Finding> DesyncDesk::close(const std::string& why, const RoomEvidence& evidence) {
+  std::vector<Finding> findings;
+  for (auto& [peer, inquiry] : inquiries_) {
+    if (inquiry.stage != Stage::kDone) give_up(inquiry, why);
+    recount(inquiry, evidence);
+    findings.push_back(finish(inquiry, evidence));
+  }
+  inquiries_.clear();
+  votes_.clear();
+  return findings;
+}
+
+/// Votes are forgotten sooner than an inquiry may last, so the fullest count stands.
+void DesyncDesk::recount(Inquiry& inquiry, const RoomEvidence& evidence) const {
+  const ReplicaVotes now = votes(inquiry.finding.noticed_tick, evidence);
+  if (now.replicas >= inquiry.finding.votes.replicas) inquiry.finding.votes = now;
+}
+
 /// Adds what has been made since the finding was captured.
-Finding DesyncDesk::finish(Inquiry& inquiry) {
+Finding DesyncDesk::finish(Inquiry& inquiry, const RoomEvidence& evidence) {
   Finding finding = std::move(inquiry.finding);
-  if (!finding.later) finding.later = history_.from(finding.tick);
+  if (!finding.later) finding.later = kept(evidence.state_from(finding.tick));
   if (!finding.ticks.empty()) {
-    const std::uint64_t last = std::max(finding.tick, finding.noticed_tick) + kTicksAround;
+    const std::uint64_t last = std::max(finding.tick, finding.noticed_tick) + kReportInputTicks;
     const std::uint64_t next = finding.ticks.back().frame.tick + 1;
-    for (protocol::LogTick& tick : history_.ticks(next, last))
+    for (protocol::LogTick& tick : kept_ticks(evidence, next, last)) {
       if (tick.frame.tick == finding.ticks.back().frame.tick + 1)
         finding.ticks.push_back(std::move(tick));
+    }
   }
   ++(finding.missing.empty() ? counts_.complete : counts_.without);
   return finding;

@@ -11,13 +11,12 @@
 
 #include "protocol/messages.hpp"
 #include "server/desync/finding.hpp"
-#include "server/desync/history.hpp"
+#include "server/room/inquiry.hpp"
 
 namespace cycloid::server {
 
 /// Bounds of what desyncs may cost a room. None may be 0.
 struct DesyncDeskOptions {
-  HistoryOptions history;
   std::size_t inquiries_max = 2;         ///< At a time; a peer has at most one.
   std::uint32_t findings_per_hour = 20;  ///< What is more is counted only.
   std::chrono::nanoseconds deadline{std::chrono::seconds{10}};  ///< For all that a client sends.
@@ -29,9 +28,10 @@ struct DesyncDeskOptions {
 
 /// Asks desynced clients of one room which tick went wrong, and for their state of that tick.
 ///
-/// Sans I/O: what peers say and the time in, messages and findings out. It never waits, and nobody
-/// waits for it: the room gives the client its exact state at once. Whatever a client says or does
-/// not say ends, at the latest at its deadline, in a finding; what is missing in it is said.
+/// Sans I/O: what peers say, what the room still knows and the time in, messages and findings out.
+/// It never waits, and nobody waits for it: the room gives the client its exact state at once.
+/// Whatever a client says or does not say ends, at the latest at its deadline, in a finding; what
+/// is missing in it is said.
 class DesyncDesk {
  public:
   struct Counts {
@@ -43,30 +43,27 @@ class DesyncDesk {
   };
 
   DesyncDesk(DesyncDeskOptions options, std::shared_ptr<const RoomIdentity> room)
-      : options_(options), room_(std::move(room)), history_(options.history) {}
-
-  /// The match begins, or goes on elsewhere: with this state.
-  void start(const scenes::Simulation& simulation);
-  /// After every tick. One that does not follow the last one begins the match anew.
-  void on_tick(const protocol::InputFrame& frame, std::uint64_t digest,
-               const scenes::Simulation& simulation);
+      : options_(options), room_(std::move(room)) {}
 
   /// Every digest that a lockstep client answers with, equal or not: the vote of that replica.
   void on_digest(PeerId peer, std::uint64_t tick, std::uint64_t digest);
   /// It was not ours. False where a bound forbids to look into it.
-  bool on_mismatch(const ClientIdentity& client, const protocol::Digest& said, std::int64_t now_ns);
+  bool on_mismatch(const ClientIdentity& client, const protocol::Digest& said, std::int64_t now_ns,
+                   const RoomEvidence& evidence);
   /// What to send to the peer, if anything.
   std::optional<protocol::StateWanted> on_tick_digests(PeerId peer,
-                                                       const protocol::TickDigests& digests);
-  void on_state_part(PeerId peer, const protocol::StatePart& part);
+                                                       const protocol::TickDigests& digests,
+                                                       const RoomEvidence& evidence);
+  void on_state_part(PeerId peer, const protocol::StatePart& part, const RoomEvidence& evidence);
   /// The peer is gone, or will say no more.
   void on_leave(PeerId peer);
 
   /// What is found by now, to be looked into on another thread. Call it once per tick.
-  /// @param replicas  Lockstep clients in the room, whose votes are waited for.
-  std::vector<Finding> take_findings(std::int64_t now_ns, std::size_t replicas);
+  std::vector<Finding> take_findings(std::int64_t now_ns, const RoomEvidence& evidence);
+  /// The match ends, or goes on from an earlier tick: all that is open is found as far as it is
+  /// known, with `why` as what is missing, and nothing of this branch is mixed with what comes.
+  std::vector<Finding> close(const std::string& why, const RoomEvidence& evidence);
 
-  const History& history() const { return history_; }
   const Counts& counts() const { return counts_; }
   std::size_t open() const { return inquiries_.size(); }
   std::size_t held_bytes() const;  ///< Of what clients have sent.
@@ -82,17 +79,17 @@ class DesyncDesk {
     Finding finding;
   };
 
-  void capture(std::uint64_t tick, Finding& finding) const;
-  void differs_at(std::uint64_t tick, std::uint64_t mine, std::uint64_t theirs, Inquiry& inquiry);
+  void differs_at(const protocol::Digest& said, std::uint64_t mine, const RoomEvidence& evidence,
+                  Inquiry& inquiry);
   void give_up(Inquiry& inquiry, std::string why);
   Inquiry* asked(PeerId peer, Stage stage);
   bool within_rate(std::int64_t now_ns);
-  ReplicaVotes votes(std::uint64_t tick) const;
-  Finding finish(Inquiry& inquiry);
+  ReplicaVotes votes(std::uint64_t tick, const RoomEvidence& evidence) const;
+  void recount(Inquiry& inquiry, const RoomEvidence& evidence) const;
+  Finding finish(Inquiry& inquiry, const RoomEvidence& evidence);
 
   DesyncDeskOptions options_;
   std::shared_ptr<const RoomIdentity> room_;
-  History history_;
   std::map<PeerId, Inquiry> inquiries_;
   std::map<std::uint64_t, std::map<PeerId, std::uint64_t>> votes_;  ///< By tick.
   std::int64_t hour_begin_ns_ = 0;

@@ -1,8 +1,8 @@
 #include <algorithm>
 #include <bit>
-#include <cstdio>
 #include <utility>
 
+#include "protocol/text.hpp"
 #include "scenes/object_names.hpp"
 #include "server/desync/report.hpp"
 #include "solver/encoding.hpp"
@@ -13,12 +13,6 @@
 
 namespace cycloid::server {
 namespace {
-
-std::string hex_text(std::uint64_t value) {
-  char text[19];
-  (void)std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
 
 std::string error_words(const solver::Error& error) {
   return std::string(solver::code_name(error.code)) + " " + error.field +
@@ -184,8 +178,9 @@ class Investigation {
     const auto digest = solver::digest_encoding(finding_.client_state);
     if (!digest) return;
     if (*digest != finding_.client_digest) {
-      note("the client said " + hex_text(finding_.client_digest) + ", but its state has " +
-           hex_text(*digest) + ": it lies, or its memory changes by itself");
+      note("the client said 0x" + protocol::hex16(finding_.client_digest) +
+           ", but its state has 0x" + protocol::hex16(*digest) +
+           ": it lies, or its memory changes by itself");
     }
     auto scratch = scenes::Simulation::create(*finding_.room->scene);
     if (!scratch.ok()) return;

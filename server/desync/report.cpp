@@ -2,6 +2,7 @@
 
 #include <nlohmann/json.hpp>
 
+#include "protocol/text.hpp"
 #include "solver/world.hpp"
 
 namespace cycloid::server {
@@ -9,43 +10,6 @@ namespace {
 
 /// Keeps the order of insertion, so that a report reads well as it is.
 using Json = nlohmann::ordered_json;
-
-/// As the program writes every digest.
-std::string digest_text(std::uint64_t value) {
-  std::string text(16, '0');
-  for (std::size_t i = text.size(); i-- > 0; value >>= 4) text[i] = "0123456789abcdef"[value & 15];
-  return text;
-}
-
-const char* origin_name(protocol::Origin origin) {
-  switch (origin) {
-    case protocol::Origin::kGiven:
-      return "given";
-    case protocol::Origin::kRepeated:
-      return "repeated";
-    case protocol::Origin::kAbsent:
-      return "absent";
-    case protocol::Origin::kNeutral:
-      return "neutral";
-  }
-  return "unknown";
-}
-
-const char* event_name(protocol::EventKind kind) {
-  switch (kind) {
-    case protocol::EventKind::kJoin:
-      return "join";
-    case protocol::EventKind::kLeave:
-      return "leave";
-    case protocol::EventKind::kKick:
-      return "kick";
-    case protocol::EventKind::kLost:
-      return "lost";
-    case protocol::EventKind::kResume:
-      return "resume";
-  }
-  return "unknown";
-}
 
 Json value_json(const ReportedValue& value) {
   return {{"object", value.object}, {"name", value.name},     {"about", value.about},
@@ -56,15 +20,17 @@ Json value_json(const ReportedValue& value) {
 Json inputs_json(const protocol::LogTick& tick) {
   Json seats = Json::array();
   for (const protocol::SeatFrame& seat : tick.frame.seats) {
-    seats.push_back({{"origin", origin_name(seat.origin)},
+    seats.push_back({{"origin", protocol::origin_name(seat.origin)},
                      {"axes", seat.input.axes},
                      {"buttons", seat.input.buttons}});
   }
   Json events = Json::array();
   for (const protocol::FrameEvent& event : tick.frame.events)
-    events.push_back({{"event", event_name(event.kind)}, {"seat", event.seat}});
+    events.push_back({{"kind", protocol::event_kind_name(event.kind)}, {"seat", event.seat}});
+  for (const protocol::FrameChange& change : tick.frame.changes)
+    events.push_back({{"kind", protocol::change_kind_name(change.kind)}, {"value", change.value}});
   return {{"tick", tick.frame.tick},
-          {"digest", digest_text(tick.digest)},
+          {"digest", protocol::hex16(tick.digest)},
           {"seats", std::move(seats)},
           {"events", std::move(events)}};
 }
@@ -72,25 +38,25 @@ Json inputs_json(const protocol::LogTick& tick) {
 void add_sides_json(const DesyncReport& report, Json& json) {
   json["server"] = {{"build", report.room.build},
                     {"solver_version", solver::kSolverVersion},
-                    {"digest", digest_text(report.server_digest)},
+                    {"digest", protocol::hex16(report.server_digest)},
                     {"digest_made_again", nullptr},
                     {"made_again_from_tick", nullptr},
                     {"suspect", report.server_suspect}};
   if (report.remade_digest) {
-    json["server"]["digest_made_again"] = digest_text(*report.remade_digest);
+    json["server"]["digest_made_again"] = protocol::hex16(*report.remade_digest);
     json["server"]["made_again_from_tick"] = report.remade_from_tick;
   }
   json["client"] = {{"peer", report.client.peer},
                     {"name", report.client.name},
                     {"seat", nullptr},
                     {"build", report.client.build},
-                    {"digest", digest_text(report.client_digest)}};
+                    {"digest", protocol::hex16(report.client_digest)}};
   if (report.client.seat >= 0) json["client"]["seat"] = report.client.seat;
   json["votes"] = {{"tick", report.noticed_tick},
                    {"replicas", report.votes.replicas},
                    {"with_server", report.votes.with_server},
                    {"largest_other", report.votes.largest_other},
-                   {"other_digest", digest_text(report.votes.other_digest)}};
+                   {"other_digest", protocol::hex16(report.votes.other_digest)}};
 }
 
 }  // namespace
@@ -100,7 +66,7 @@ std::string report_json_text(const DesyncReport& report, const ReportFiles& file
                {"kind", "desync"},
                {"room", report.room.room},
                {"scene", report.room.scene->name},
-               {"scene_digest", digest_text(report.room.scene_digest)},
+               {"scene_digest", protocol::hex16(report.room.scene_digest)},
                {"tick_rate_millihertz", report.room.tick_rate_millihertz},
                {"tick", report.tick},
                {"tick_is_first", report.is_first},

@@ -2,9 +2,12 @@
 
 #include <algorithm>
 #include <filesystem>
-#include <fstream>
+#include <span>
 #include <system_error>
 #include <utility>
+#include <vector>
+
+#include "server/log/new_file.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -12,6 +15,11 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::int64_t kReportHourNs = 3'600'000'000'000;
+
+constexpr const char* kJsonEnding = ".json";
+constexpr const char* kTextEnding = ".txt";
+constexpr const char* kLogEnding = ".cylog";
+constexpr const char* kEndings[] = {kJsonEnding, kTextEnding, kLogEnding};
 
 /// A room's name comes from outside: only what is harmless in a file name is left of it.
 std::string file_word(const std::string& name) {
@@ -21,21 +29,6 @@ std::string file_word(const std::string& name) {
     if (!plain && c != '-') c = '_';
   }
   return word.empty() ? "room" : word;
-}
-
-/// False where the file was there already or the disk does not take it.
-bool write_new(const fs::path& path, const char* data, std::size_t size) {
-  std::error_code ignored;
-  if (fs::exists(path, ignored)) return false;
-  std::ofstream stream(path, std::ios::binary);
-  stream.write(data, static_cast<std::streamsize>(size));
-  stream.close();
-  if (stream) return true;
-  fs::remove(path, ignored);
-  return false;
-}
-bool write_new(const fs::path& path, const std::string& text) {
-  return write_new(path, text.data(), text.size());
 }
 
 }  // namespace
@@ -78,9 +71,16 @@ std::string ReportSink::take_name(const Finding& finding, std::string& error) {
                            std::to_string(finding.tick) + "-peer-" +
                            std::to_string(finding.client.peer);
   std::string name = base;
-  for (int i = 2; fs::exists(fs::path(options_.folder) / (name + ".json"), failed); ++i)
-    name = base + "-" + std::to_string(i);
+  for (int i = 2; !name_is_free(name); ++i) name = base + "-" + std::to_string(i);
+  taken_.insert(name);
   return name;
+}
+
+bool ReportSink::name_is_free(const std::string& name) const {
+  if (taken_.contains(name)) return false;
+  return std::ranges::none_of(kEndings, [&](const char* ending) {
+    return options_.disk->exists((fs::path(options_.folder) / (name + ending)).string());
+  });
 }
 
 ReportSink::Written ReportSink::publish(const Finding& finding, DesyncReport* report) {
@@ -88,30 +88,41 @@ ReportSink::Written ReportSink::publish(const Finding& finding, DesyncReport* re
   Written written;
   const std::string name = take_name(finding, written.error);
   if (!name.empty()) {
-    const fs::path folder(options_.folder);
-    ReportFiles files{name + ".json", "", ""};
-    const protocol::Bytes log = cut_log(finding, files.log_reason);
-    const char* bytes = reinterpret_cast<const char*>(log.data());
-    if (!log.empty()) {
-      if (write_new(folder / (name + ".cylog"), bytes, log.size()))
-        files.log = name + ".cylog";
-      else
-        files.log_reason = "it could not be written";
-    }
-    const std::string json = report_json_text(found, files);
-    std::string ignored;
-    const auto text = report_as_text(json, ignored);
-    const bool good = write_new(folder / files.report, json) &&
-                      write_new(folder / (name + ".txt"), text.value_or(""));
-    if (good) written.report = (folder / files.report).string();
-    if (!good) {
-      written.error = (folder / files.report).string() + ": cannot be written";
-      const std::lock_guard lock(mutex_);
-      ++dropped_;
-    }
+    write(finding, name, found, written);
+    const std::lock_guard lock(mutex_);
+    taken_.erase(name);
+    dropped_ += written.report.empty() ? 1 : 0;
   }
   if (report != nullptr) *report = std::move(found);
   return written;
+}
+
+/// All of a report's files, or none but where the log alone does not fit: then the report says so.
+void ReportSink::write(const Finding& finding, const std::string& name, const DesyncReport& report,
+                       Written& written) {
+  std::vector<std::string> made;
+  const auto put = [&](const char* ending, std::span<const std::byte> bytes) {
+    const std::string path = (fs::path(options_.folder) / (name + ending)).string();
+    const int error = write_new_file(*options_.disk, path, bytes);
+    if (error == 0) made.push_back(path);
+    return error == 0 ? "" : path + ": " + std::generic_category().message(error);
+  };
+  ReportFiles files{name + kJsonEnding, "", ""};
+  const protocol::Bytes log = cut_log(finding, files.log_reason);
+  if (!log.empty()) {
+    files.log_reason = put(kLogEnding, log);
+    if (files.log_reason.empty()) files.log = name + kLogEnding;
+  }
+  const std::string json = report_json_text(report, files);
+  std::string ignored;
+  const std::string text = report_as_text(json, ignored).value_or("");
+  written.error = put(kJsonEnding, std::as_bytes(std::span(json)));
+  if (written.error.empty()) written.error = put(kTextEnding, std::as_bytes(std::span(text)));
+  if (written.error.empty()) {
+    written.report = (fs::path(options_.folder) / files.report).string();
+    return;
+  }
+  for (const std::string& path : made) (void)options_.disk->remove(path);
 }
 
 }  // namespace cycloid::server

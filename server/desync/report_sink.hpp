@@ -3,10 +3,13 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <mutex>
+#include <set>
 #include <string>
 
 #include "server/desync/report.hpp"
+#include "server/log/disk.hpp"
 
 namespace cycloid::server {
 
@@ -15,6 +18,7 @@ struct ReportSinkOptions {
   std::uint32_t reports_per_hour = 20;
   std::uint32_t reports_max = 200;       ///< In the folder; what others put there counts too.
   std::function<std::int64_t()> now_ns;  ///< Never goes back.
+  std::shared_ptr<Disk> disk = system_disk();
 };
 
 /// Writes reports to a folder, so that many desyncs fill no disk: for each a .json for programs, a
@@ -35,6 +39,9 @@ class ReportSink {
 
  private:
   std::string take_name(const Finding& finding, std::string& error);
+  bool name_is_free(const std::string& name) const;
+  void write(const Finding& finding, const std::string& name, const DesyncReport& report,
+             Written& written);
 
   ReportSinkOptions options_;
   mutable std::mutex mutex_;
@@ -42,6 +49,7 @@ class ReportSink {
   std::uint32_t hour_reports_ = 0;
   bool hour_began_ = false;
   std::uint64_t dropped_ = 0;
+  std::set<std::string> taken_;  ///< Names of reports that are being written.
 };
 
 /// The match around a finding as a log of its own: from a state before the tick that differs, with

@@ -76,8 +76,11 @@ void add_inputs(const Json& json, std::string& text) {
       if (const std::string origin = string_of(said, "origin"); origin != "given")
         text += " " + origin;
     }
-    for (const Json& event : tick.at("events"))
-      text += "  " + string_of(event, "event") + " of seat " + number_of(event, "seat");
+    for (const Json& event : tick.at("events")) {
+      text += "  " + string_of(event, "kind");
+      text += event.contains("seat") ? " of seat " + number_of(event, "seat")
+                                     : " to " + number_of(event, "value");
+    }
     text += "\n";
   }
 }

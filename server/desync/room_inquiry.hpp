@@ -25,9 +25,9 @@ struct RoomInquiryHooks {
 /// told to the client in a RoomNotice.
 class RoomInquiry final : public DesyncInquiry {
  public:
-  /// @param start  The world as the room begins with it.
   RoomInquiry(DesyncDeskOptions options, std::shared_ptr<const RoomIdentity> room,
-              const scenes::Simulation& start, RoomInquiryHooks hooks);
+              RoomInquiryHooks hooks)
+      : desk_(options, std::move(room)), hooks_(std::move(hooks)) {}
 
   InquiryAnswer on_mismatch(const Mismatch& mismatch, const RoomEvidence& evidence) override;
   InquiryAnswer on_tick_digests(PeerId peer, const protocol::TickDigests& digests,
@@ -35,18 +35,18 @@ class RoomInquiry final : public DesyncInquiry {
   InquiryAnswer on_state_part(PeerId peer, const protocol::StatePart& part,
                               const RoomEvidence& evidence) override;
   void on_gone(PeerId peer) override { desk_.on_leave(peer); }
-  void on_tick(const protocol::InputFrame& frame, std::uint64_t digest,
-               const scenes::Simulation& simulation) override {
-    desk_.on_tick(frame, digest, simulation);
-  }
+  void on_break(const std::string& why, const RoomEvidence& evidence) override;
   void on_digest(PeerId peer, std::uint64_t tick, std::uint64_t digest) override {
     desk_.on_digest(peer, tick, digest);
   }
-  std::vector<std::pair<PeerId, protocol::ServerMessage>> take_messages() override;
+  std::vector<std::pair<PeerId, protocol::ServerMessage>> take_messages(
+      const RoomEvidence& evidence) override;
 
   const DesyncDesk& desk() const { return desk_; }
 
  private:
+  void publish(Finding found);
+
   using Told = std::vector<std::pair<PeerId, protocol::ServerMessage>>;
 
   DesyncDesk desk_;

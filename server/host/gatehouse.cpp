@@ -17,6 +17,9 @@ constexpr std::chrono::milliseconds kSweep{50};
 constexpr std::int64_t kFarewellNs = 1'000'000'000;
 /// Who was refused may go on sending; so many of them are heard out at a time.
 constexpr std::size_t kCallersLeavingMax = 1024;
+/// Of what was sent by one who is turned away at once: whoever sends as fast as it is read may be
+/// reset.
+constexpr int kReadsMax = 16;
 /// Enough for a hello, whose connection then goes elsewhere.
 constexpr std::size_t kTlsReadBytes = 2048;
 
@@ -170,18 +173,22 @@ void Gatehouse::note(const Caller& caller, const GateRefused& refused) {
 }
 
 void Gatehouse::turn_away(Entrant entrant, const protocol::Refused& refused) {
-  meters_->refusals[static_cast<std::size_t>(refused.code)].add();
   const auto caller = std::make_shared<Caller>();
   caller->stream = std::move(entrant.stream);
   caller->count = std::move(entrant.count);
-  see_off(caller, encoded(refused));
+  asio::error_code error;
+  const auto peer = caller->stream->socket().remote_endpoint(error);
+  if (!error) caller->address = address_of(peer.address());
+  GateRefused word = encoded(refused);
+  note(*caller, word);
+  see_off(caller, std::move(word));
 }
 
 void Gatehouse::turn_away_now(asio::ip::tcp::socket& socket, const protocol::Refused& refused) {
   asio::error_code ignored;  // Whoever cannot be told is not told.
   socket.non_blocking(true, ignored);
   // What lies unread when a socket closes would reset the connection, and our word with it.
-  while (socket.read_some(asio::buffer(scratch_), ignored) > 0) {
+  for (int i = 0; i < kReadsMax && socket.read_some(asio::buffer(scratch_), ignored) > 0; ++i) {
   }
   const protocol::Bytes word = protocol::encode(protocol::ServerMessage(refused));
   (void)socket.write_some(asio::buffer(word), ignored);

@@ -52,6 +52,7 @@ class Gatehouse {
   void turn_away_now(asio::ip::tcp::socket& socket, const protocol::Refused& refused);
   /// From now on newcomers are refused with kDraining.
   void drain(const std::string& reason) { gate_.drain(reason); }
+  void set_limits(const GateOptions& limits) { gate_.set_limits(limits); }
   void set_keys(std::vector<PublicKey> keys) { gate_.set_keys(std::move(keys)); }
   /// Lets go of all.
   void close();

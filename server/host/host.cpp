@@ -25,6 +25,7 @@ Host::Host(HostOptions options)
       accept_strand_(asio::make_strand(io_)),
       signals_(accept_strand_),
       epoch_ns_(process_now_ns()),
+      drain_ms_(options_.drain.count()),
       limits_(options_.limits) {
   if (options_.logger == nullptr) options_.logger = stderr_logger();
   const auto trouble = [this](const std::string& why) {
@@ -74,8 +75,8 @@ RoomSite Host::site() {
   const auto gone_handler = [this](const std::string& name, const ServeReport& report) {
     gone(name, report);
   };
-  return RoomSite{io_,      slow_,     meters_,   options_.logger, options_.disk,
-                  reports_, epoch_ns_, turn_away, gone_handler};
+  return RoomSite{io_,      slow_,          meters_,   options_.logger, options_.disk,
+                  reports_, step_memories_, epoch_ns_, turn_away,       gone_handler};
 }
 
 void Host::start_rooms() {
@@ -99,6 +100,10 @@ HostReport Host::run(std::stop_token stop) {
     wait_for_signal();
   }
   options_.logger->info("listening at {} port {}", options_.address, port());
+  if (options_.tls != nullptr) {
+    options_.logger->info("TLS only, certificate {} until Unix second {}",
+                          options_.tls->fingerprint(), options_.tls->expires_unix_s());
+  }
   listener_->start();
   {
     const std::stop_callback on_stop(stop, [this] { end("told to stop"); });
@@ -145,9 +150,10 @@ void Host::wait_for_signal() {
   signals_.async_wait([this](const asio::error_code& error, int signal) {
     if (error) return;
     wait_for_signal();
-    if (signal == SIGHUP) return options_.on_reload();
+    // It reads files, for which no room waits.
+    if (signal == SIGHUP) return asio::post(slow_, options_.on_reload);
     const std::string name = signal == SIGINT ? "SIGINT" : "SIGTERM";
-    if (!draining_ && options_.drain.count() > 0) return drain(name, options_.drain);
+    if (!draining_ && drain_time().count() > 0) return drain(name, drain_time());
     if (!draining_) return end(name);
     for (const auto& room : rooms()) room->hurry(name);  // Asked twice: at once.
     asio::error_code ignored;
@@ -211,8 +217,8 @@ void Host::set_limits(const HostLimits& limits) {
   for (const auto& room : rooms()) room->set_limits(limits.room);
 }
 
-void Host::set_drain(std::chrono::milliseconds drain) {
-  asio::post(accept_strand_, [this, drain] { options_.drain = drain; });
+void Host::set_gate_limits(const GateOptions& gate) {
+  asio::post(accept_strand_, [this, gate] { gatehouse_->set_limits(gate); });
 }
 
 void Host::set_token_keys(std::vector<PublicKey> keys) {

@@ -48,11 +48,11 @@ struct HostOptions {
   std::shared_ptr<Disk> disk = system_disk();     ///< Of the logs.
   std::string desync_directory;                   ///< For reports of desyncs; none: a line each.
   std::shared_ptr<spdlog::logger> logger;         ///< None: lines on stderr.
-  std::function<void()> on_reload;                ///< SIGHUP; on the accept strand.
+  std::function<void()> on_reload;                ///< SIGHUP; on a thread beside the pool.
 };
 
 struct HostReport {
-  std::map<std::string, ServeReport> rooms;  ///< The last so many that have ended, by name.
+  std::map<std::string, ServeReport> rooms;  ///< The first 1,024 that have ended, by name.
   std::uint64_t rooms_ended = 0;
   std::uint64_t refusals = 0;    ///< At the gate.
   std::uint64_t gate_bytes = 0;  ///< Heard there: hellos.
@@ -93,8 +93,12 @@ class Host {
   /// "", or which room has not made a tick for so many ticks though one was due.
   std::string stuck(std::uint32_t ticks_max) const;
   void set_limits(const HostLimits& limits);
+  /// Of `gate` what `Gate::set_limits` takes.
+  void set_gate_limits(const GateOptions& gate);
   void set_token_keys(std::vector<PublicKey> keys);
-  void set_drain(std::chrono::milliseconds drain);
+  void set_drain(std::chrono::milliseconds drain) { drain_ms_ = drain.count(); }
+  /// How long a drain lasts that names no deadline.
+  std::chrono::milliseconds drain_time() const { return std::chrono::milliseconds(drain_ms_); }
   const HostMeters& meters() const { return *meters_; }
   const std::shared_ptr<spdlog::logger>& logger() const { return options_.logger; }
 
@@ -109,6 +113,8 @@ class Host {
   bool makes_on_join(const std::string& wanted) const;
   void on_admitted(Entrant entrant);
   void join_new_room(const std::string& name, Entrant entrant);
+  /// Those who waited for the room: into it, or away with what `made` says.
+  void let_joiners_in(const std::string& name, const ActResult& made);
   ActResult reserve(const std::string& name, const std::string& of_template, RoomSettings& settings,
                     std::uint32_t& slot);
   void build(const std::string& name, RoomSettings settings, std::uint32_t slot,
@@ -123,12 +129,14 @@ class Host {
   asio::io_context io_;
   asio::thread_pool slow_{2};
   std::shared_ptr<ReportSink> reports_;
+  scenes::StepMemories step_memories_;
   Gatehouse::Strand accept_strand_;
   asio::signal_set signals_;
   std::optional<Gatehouse> gatehouse_;
   std::optional<Listener> listener_;
   std::int64_t epoch_ns_ = 0;
   std::atomic<bool> draining_{false};
+  std::atomic<std::int64_t> drain_ms_;
   std::map<std::string, std::vector<Entrant>> joining_;  ///< Rooms that are being made for them.
 
   mutable std::mutex directory_mutex_;

@@ -14,8 +14,9 @@ constexpr int kCannotRun = 422;
 constexpr int kCannotWrite = 500;
 constexpr int kNoneMore = 503;
 
-void answer(const HostedRoom::Done& done, ActResult result) {
-  if (done) done(std::move(result));
+RoomFound found_by(protocol::Refusal code) {
+  if (code == protocol::Refusal::kRoomLocked) return RoomFound::kLocked;
+  return code == protocol::Refusal::kRoomFull ? RoomFound::kFull : RoomFound::kDraining;
 }
 
 }  // namespace
@@ -89,17 +90,21 @@ void Host::build(const std::string& name, RoomSettings settings, std::uint32_t s
       if (made == nullptr) {
         forget(name, slot);
       } else {
+        Limits limits;
         {
           const std::lock_guard lock(directory_mutex_);
           directory_[name] = made;
+          limits = limits_.room;
         }
         meters_->rooms_made.add();
         options_.logger->info("room {} is made of {}", name, made->scene_name());
         made->start();
+        made->set_limits(limits);  // They may be others than when its making began.
         if (draining_) {
           made->act(LifeAct::kEnd, "the server goes away", std::chrono::milliseconds(0), {});
         }
       }
+      let_joiners_in(name, result);
       answer(done, result);
     });
   };
@@ -132,14 +137,14 @@ RoomVerdict Host::judge(const std::string& wanted, const Admission& admission) c
   if (const auto room = find_or_only(wanted)) {
     const auto closed = room->closed(admission);
     if (!closed) return {RoomFound::kExists, ""};
-    const bool locked = closed->code == protocol::Refusal::kRoomLocked;
-    return {locked ? RoomFound::kLocked : RoomFound::kDraining, closed->reason};
+    return {found_by(closed->code), closed->reason};
   }
   if (wanted.empty()) {
     return {RoomFound::kNoSuchRoom,
             "the hello names no room, and here are " + std::to_string(rooms().size())};
   }
-  if (!makes_on_join(wanted)) {
+  // Who comes back shows a secret, and a room that is not there knows none.
+  if (!admission.hello.resume.empty() || !makes_on_join(wanted)) {
     return {RoomFound::kNoSuchRoom, "there is no room \"" + wanted + "\""};
   }
   const std::lock_guard lock(directory_mutex_);
@@ -160,19 +165,26 @@ void Host::join_new_room(const std::string& name, Entrant entrant) {
   found->second.push_back(std::move(entrant));
   if (!first) return;  // It is being made.
   auto joined = [this, name](const ActResult& result) {
-    const auto waiting = joining_.extract(name);
-    const auto room = find(name);
-    const auto code =
-        result.status == kNoneMore ? protocol::Refusal::kRoomFull : protocol::Refusal::kNoSuchRoom;
-    for (Entrant& joiner : waiting.mapped()) {
-      if (room != nullptr) {
-        room->enter(std::move(joiner));
-      } else {
-        gatehouse_->turn_away(std::move(joiner), {code, result.text});
-      }
-    }
+    // Somebody else is making it; they are let in when it is made.
+    if (result.status == kNameTaken && find(name) == nullptr) return;
+    let_joiners_in(name, result);
   };
   make_room(name, name.substr(0, name.find(':')), std::move(joined));
+}
+
+void Host::let_joiners_in(const std::string& name, const ActResult& made) {
+  auto waiting = joining_.extract(name);
+  if (waiting.empty()) return;
+  const auto room = find(name);
+  const auto code =
+      made.status == kNoneMore ? protocol::Refusal::kRoomFull : protocol::Refusal::kNoSuchRoom;
+  for (Entrant& joiner : waiting.mapped()) {
+    if (room != nullptr) {
+      room->enter(std::move(joiner));
+    } else {
+      gatehouse_->turn_away(std::move(joiner), {code, made.text});
+    }
+  }
 }
 
 }  // namespace cycloid::server

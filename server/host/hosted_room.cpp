@@ -10,6 +10,7 @@
 #include "scenes/catalogue.hpp"
 #include "server/admission/random.hpp"
 #include "server/host/process_time.hpp"
+#include "server/host/room_clock.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -67,6 +68,7 @@ HostedRoom::HostedRoom(RoomSite site, std::string name, RoomSettings settings, s
       strand_(asio::make_strand(site_.io)),
       timer_(strand_),
       simulation_(make_simulation(settings_)) {
+  simulation_->use_step_memory(site_.step_memories);
   rate_millihertz_ = rate_of(settings_, *simulation_);
   seats_ = simulation_->seats();
   protocol::LogHeader header = protocol::log_header_of(settings_.scene);
@@ -91,7 +93,7 @@ void HostedRoom::start() {
 
 void HostedRoom::open_room() {
   const std::int64_t now_ns = process_now_ns();
-  clock_ = RoomClock(staggered_start_ns(site_.epoch_ns, now_ns, rate_millihertz_, slot_));
+  start_ns_ = staggered_start_ns(site_.epoch_ns, now_ns, rate_millihertz_, slot_);
   RoomOptions options;
   options.limits = settings_.limits;
   options.scene_digest = scenes::scene_digest(settings_.scene);
@@ -107,13 +109,12 @@ void HostedRoom::open_room() {
   const auto identity = std::make_shared<const RoomIdentity>(
       RoomIdentity{name_, std::make_shared<const scenes::Scene>(std::move(settings_.scene)),
                    options.scene_digest, options.build, rate_millihertz_});
-  inquiry_ =
-      std::make_unique<RoomInquiry>(DesyncDeskOptions{}, identity, *simulation_, inquiry_hooks());
+  inquiry_ = std::make_unique<RoomInquiry>(DesyncDeskOptions{}, identity, inquiry_hooks());
   RoomHooks hooks;
   hooks.inquiry = inquiry_.get();
-  hooks.now_ns = [this] { return clock_.room_ns(process_now_ns()); };
+  hooks.now_ns = [this] { return std::max(start_ns_, process_now_ns()); };
   hooks.notice = [this](const Notice& said) { take_notice(said); };
-  hooks.log = log_.get();
+  if (log_->kept()) hooks.log = log_.get();
   hooks.random = system_random();
   room_.emplace(options, std::move(*simulation_), std::move(hooks));
   simulation_.reset();
@@ -131,26 +132,57 @@ RoomInquiryHooks HostedRoom::inquiry_hooks() {
     };
     asio::post(site_.slow, std::move(task));
   };
-  hooks.publish = [logger = site_.logger, reports = site_.reports](const Finding& finding) {
+  hooks.publish = [name = name_, logger = site_.logger, reports = site_.reports,
+                   meters = site_.meters](const Finding& finding) {
     DesyncReport report;
     ReportSink::Written written;
     if (reports != nullptr) written = reports->publish(finding, &report);
     if (reports == nullptr) report = investigate(finding);
+    if (reports != nullptr) meters->reports_dropped.set(reports->dropped());
     const std::string line = report_line(report);
-    logger->warn("desync: {}{}", line,
-                 written.report.empty() ? written.error : "; report " + written.report);
-    if (report.server_suspect) logger->error("desync: the server itself is suspect: {}", line);
+    const std::string where = !written.report.empty()  ? "; report " + written.report
+                              : !written.error.empty() ? "; no report: " + written.error
+                                                       : "";
+    logger->warn("room {}: client {}: {}{}", name, finding.client.peer, line, where);
+    if (report.server_suspect) {
+      logger->error("room {}: the server itself is suspect: client {}: {}", name,
+                    finding.client.peer, line);
+    }
     return line;
   };
   return hooks;
 }
 
 void HostedRoom::take_notice(const Notice& notice) {
-  site_.logger->log(level_of(notice.kind), "room {}: {}", name_, notice.text);
+  const bool by_client = notice.kind == Notice::Kind::kJoin ||
+                         notice.kind == Notice::Kind::kLeave ||
+                         notice.kind == Notice::Kind::kRefusal;
+  if (by_client) show_places();
+  if (by_client && !lines_.take(1, process_now_ns())) {
+    ++lines_left_out_;
+    return;
+  }
+  const std::uint64_t left_out = by_client ? std::exchange(lines_left_out_, 0) : 0;
+  const std::string more =
+      left_out == 0 ? ""
+                    : " (and " + std::to_string(left_out) + " lines like this left out before)";
+  site_.logger->log(level_of(notice.kind), "room {}: {}{}", name_, notice.text, more);
+}
+
+/// So that a newcomer who cannot come in is turned away before its token is used up.
+void HostedRoom::show_places() {
+  if (!room_) return;
+  const SeatTable& seats = room_->seats();
+  bool full = seats.size() > 0;
+  for (std::size_t seat = 0; seat < seats.size() && full; ++seat) {
+    full = seats[seat].state == SeatState::kHeld || seats[seat].state == SeatState::kLost;
+  }
+  shown_seats_full_ = full;
+  shown_full_ = !room_->takes_connections();
 }
 
 void HostedRoom::arm() {
-  if (life_.ticking()) return arm_at(clock_.process_ns(room_->next_deadline_ns()));
+  if (life_.ticking()) return arm_at(room_->next_deadline_ns());
   meters_.armed_ns = 0;
   timer_.expires_after(std::chrono::nanoseconds(kIdleLookNs));
   timer_.async_wait([self = shared_from_this()](const asio::error_code&) { self->on_tick(); });
@@ -165,16 +197,14 @@ void HostedRoom::arm_at(std::int64_t process_ns) {
 void HostedRoom::on_tick() {
   if (!room_ || life_.stage() == LifeStage::kEnded) return;
   const std::int64_t begin_ns = process_now_ns();
-  if (life_.ticking()) {
-    const std::int64_t late_ns = begin_ns - clock_.process_ns(room_->next_deadline_ns());
-    const std::uint64_t before = room_->tick();
-    room_->advance();
-    if (room_->tick() > before) {  // Else it waits for an input, or was rewound.
-      const std::uint64_t made = room_->tick() - before;
-      meters_.lateness.add(static_cast<std::uint64_t>(std::max<std::int64_t>(late_ns, 0)));
-      const auto took_ns = static_cast<std::uint64_t>(process_now_ns() - begin_ns);
-      meters_.tick_time.add(took_ns / made, made);
-    }
+  const std::int64_t late_ns = begin_ns - room_->next_deadline_ns();
+  const std::uint64_t before = room_->tick();
+  room_->advance();              // In a pause too: whoever is there is heard and served.
+  if (room_->tick() > before) {  // Else it waits for an input, stands still, or was rewound.
+    const std::uint64_t made = room_->tick() - before;
+    meters_.lateness.add(static_cast<std::uint64_t>(std::max<std::int64_t>(late_ns, 0)));
+    const auto took_ns = static_cast<std::uint64_t>(process_now_ns() - begin_ns);
+    meters_.tick_time.add(took_ns / made, made);
   }
   wake_sessions();
   settle(begin_ns);
@@ -205,6 +235,7 @@ void HostedRoom::end(const std::string& reason) {
 
 void HostedRoom::wait_for_last() {
   meters_.armed_ns = 0;
+  if (!room_) return;
   std::erase_if(sessions_, [](const auto& session) { return session.expired(); });
   if (hurries_) {
     for (const auto& weak : sessions_) {
@@ -217,7 +248,6 @@ void HostedRoom::wait_for_last() {
         [self = shared_from_this()](const asio::error_code&) { self->wait_for_last(); });
     return;
   }
-  if (!room_) return;
   publish();
   const ServeReport last = report();
   room_.reset();
@@ -243,10 +273,11 @@ void HostedRoom::admit(Entrant entrant) {
     const protocol::Refused over{protocol::Refusal::kDraining, "the room has ended"};
     return site_.turn_away(std::move(entrant), refused ? *refused : over);
   }
-  SessionPlace place{strand_, *room_, scratch_, shared_from_this()};
+  SessionPlace place{strand_, *room_, shared_from_this()};
   const auto session = std::make_shared<Session>(std::move(entrant), std::move(place));
   sessions_.push_back(session);
   session->start();
+  show_places();
 }
 
 std::optional<protocol::Refused> HostedRoom::closed(const Admission& admission) const {
@@ -255,14 +286,29 @@ std::optional<protocol::Refused> HostedRoom::closed(const Admission& admission) 
   switch (shown_stage_.load()) {
     case LifeStage::kRunning:
     case LifeStage::kPaused:
-      if (!shown_locked_ || passes) return std::nullopt;
-      return protocol::Refused{protocol::Refusal::kRoomLocked, "room " + name_ + " is locked"};
+      if (shown_locked_ && !passes) {
+        return protocol::Refused{protocol::Refusal::kRoomLocked, "room " + name_ + " is locked"};
+      }
+      return full(admission);
     case LifeStage::kDraining:
       return protocol::Refused{protocol::Refusal::kDraining, "room " + name_ + " is draining"};
     case LifeStage::kEnded:
       return protocol::Refused{protocol::Refusal::kDraining, "room " + name_ + " has ended"};
   }
   return std::nullopt;
+}
+
+std::optional<protocol::Refused> HostedRoom::full(const Admission& admission) const {
+  if (shown_full_) {
+    return protocol::Refused{protocol::Refusal::kRoomFull,
+                             "room " + name_ + " takes no more connections"};
+  }
+  const bool any_seat = admission.role != Role::kSpectator && admission.hello.resume.empty() &&
+                        admission.seat == protocol::kAnySeat &&
+                        admission.hello.seat_wish == protocol::kAnySeat;
+  if (!any_seat || !shown_seats_full_) return std::nullopt;
+  const std::string all = std::to_string(seats_);
+  return protocol::Refused{protocol::Refusal::kRoomFull, all + " seats taken, of " + all};
 }
 
 void HostedRoom::publish_stage() {
@@ -275,8 +321,10 @@ void HostedRoom::publish() {
   meters_.tick.set(room_->tick());
   meters_.digest.set(room_->digest());
   meters_.clients.set(room_->peers());
+  show_places();
   meters_.joined.set(statistics.clients);
   meters_.desyncs.set(statistics.desyncs);
+  meters_.inquiries_skipped.set(inquiry_->desk().counts().skipped);
   meters_.inputs_late.set(statistics.inputs_late);
   meters_.inputs_early.set(statistics.inputs_early);
   meters_.bytes_in.set(statistics.bytes_in);

@@ -2,7 +2,6 @@
 
 #include <spdlog/logger.h>
 
-#include <array>
 #include <asio.hpp>
 #include <atomic>
 #include <functional>
@@ -11,11 +10,11 @@
 #include <string>
 #include <vector>
 
+#include "server/admission/refill_bucket.hpp"
 #include "server/desync/report_sink.hpp"
 #include "server/desync/room_inquiry.hpp"
 #include "server/host/act_result.hpp"
 #include "server/host/life_cycle.hpp"
-#include "server/host/room_clock.hpp"
 #include "server/host/room_log.hpp"
 #include "server/host/room_report.hpp"
 #include "server/host/room_settings.hpp"
@@ -23,6 +22,10 @@
 #include "server/operation/meters.hpp"
 
 namespace cycloid::server {
+
+/// Lines of a room's log that clients cause: who joins, leaves or is refused in a loop fills no
+/// disk.
+inline constexpr Rate kClientLines{5, 20};
 
 /// What hosted rooms need of their host, which outlives them.
 struct RoomSite {
@@ -32,12 +35,18 @@ struct RoomSite {
   std::shared_ptr<spdlog::logger> logger;
   std::shared_ptr<Disk> disk;           ///< Of the logs.
   std::shared_ptr<ReportSink> reports;  ///< Of desyncs; none: they are a line each.
+  scenes::StepMemories step_memories;   ///< Of all rooms: those that wait hold none.
   std::int64_t epoch_ns = 0;            ///< Where the rasters of all rooms begin.
   /// A connection that cannot come in, and why. Any thread.
   std::function<void(Entrant, const protocol::Refused&)> turn_away;
   /// The room is over and nothing of it runs any more. Any thread.
   std::function<void(const std::string& name, const ServeReport&)> gone;
 };
+
+/// Says the result to whoever asked for it.
+inline void answer(const std::function<void(ActResult)>& done, ActResult result) {
+  if (done) done(std::move(result));
+}
 
 /// A room with its strand, its clock, its log and its sessions.
 ///
@@ -62,6 +71,9 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   void act(LifeAct act, std::string reason, std::chrono::milliseconds deadline, Done done);
   /// Takes the seat from whoever holds it.
   void kick(std::uint16_t seat, std::string reason, Done done);
+  /// Keeps the seat for an identity, or, where that is "", for a token bound to the seat, until so
+  /// many more ticks are made. @pre the seat exists and ticks > 0.
+  void reserve(std::uint16_t seat, std::string identity, std::uint64_t ticks, Done done);
   /// Writes the exact state of the last tick to a file, which must be new.
   void write_snapshot(std::string path, Done done);
   /// The match goes on from an earlier tick.
@@ -83,6 +95,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   std::optional<protocol::Refused> closed(const Admission& admission) const;
 
  private:
+  std::optional<protocol::Refused> full(const Admission& admission) const;
   void open_room();
   RoomInquiryHooks inquiry_hooks();
   void on_tick();
@@ -96,6 +109,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   void publish_stage();
   void ask(Done done, std::function<ActResult(Room&)> question);
   void take_notice(const Notice& notice);
+  void show_places();
   void admit(Entrant entrant);
   ServeReport report() const;
   std::int64_t tick_ns() const;
@@ -106,23 +120,26 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   std::uint32_t slot_;
   std::uint32_t rate_millihertz_ = 0;
   int seats_ = 0;
-  asio::strand<asio::io_context::executor_type> strand_;
+  RoomStrand strand_;
   asio::steady_timer timer_;
   RoomMeters meters_;
   std::optional<scenes::Simulation> simulation_;  ///< Until the room has it.
   std::unique_ptr<RoomLog> log_;
-  RoomClock clock_{0};
+  std::int64_t start_ns_ = 0;  ///< The room's time stands here until then.
   LifeCycle life_;
   std::unique_ptr<RoomInquiry> inquiry_;  ///< Before the room, which calls it.
   std::optional<Room> room_;
   std::vector<std::weak_ptr<Session>> sessions_;
-  std::array<std::byte, kSessionReadBytes> scratch_;
   std::int64_t drain_at_ns_ = 0;
   std::string drain_reason_;
   std::int64_t empty_since_ns_ = 0;
   bool hurries_ = false;
   std::atomic<LifeStage> shown_stage_{LifeStage::kRunning};
   std::atomic<bool> shown_locked_{false};
+  std::atomic<bool> shown_seats_full_{false};  ///< As of the last tick, join or leave.
+  std::atomic<bool> shown_full_{false};        ///< Of connections, likewise.
+  RefillBucket lines_{kClientLines, 0};
+  std::uint64_t lines_left_out_ = 0;
 };
 
 }  // namespace cycloid::server

@@ -1,13 +1,10 @@
-#include <fcntl.h>
-#include <unistd.h>
-
-#include <algorithm>
 #include <cerrno>
 #include <system_error>
 #include <utility>
 
 #include "server/host/hosted_room.hpp"
 #include "server/host/process_time.hpp"
+#include "server/log/new_file.hpp"
 
 // What others ask of a room: each act runs on the room's strand.
 
@@ -18,30 +15,11 @@ constexpr int kConflict = 409;
 constexpr int kCannotWrite = 500;
 constexpr int kNotFound = 404;
 
-void answer(const HostedRoom::Done& done, ActResult result) {
-  if (done) done(std::move(result));
-}
-
-/// Whole and on the disk, or not there.
-ActResult write_new_file(const std::string& path, const std::vector<std::byte>& bytes) {
-  const auto failed = [&](const char* what, int status) {
-    return ActResult{status,
-                     "file: " + path + ": " + what + ": " + std::generic_category().message(errno)};
-  };
-  const int file = ::open(path.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0644);
-  if (file < 0) return failed("cannot be made", errno == EEXIST ? kConflict : kCannotWrite);
-  std::size_t done = 0;
-  while (done < bytes.size()) {
-    const ssize_t count = ::write(file, bytes.data() + done, bytes.size() - done);
-    if (count < 0 && errno == EINTR) continue;
-    if (count <= 0) break;
-    done += static_cast<std::size_t>(count);
-  }
-  ActResult result;
-  if (done < bytes.size() || ::fsync(file) != 0) result = failed("cannot be written", kCannotWrite);
-  (void)::close(file);
-  if (!result.ok()) (void)::unlink(path.c_str());
-  return result;
+ActResult write_state_file(const std::string& path, const std::vector<std::byte>& state) {
+  const int error = write_new_file(*system_disk(), path, state);
+  if (error == 0) return {};
+  return {error == EEXIST ? kConflict : kCannotWrite,
+          "file: " + path + ": cannot be written: " + std::generic_category().message(error)};
 }
 
 }  // namespace
@@ -59,14 +37,8 @@ void HostedRoom::act(LifeAct act, std::string reason, std::chrono::milliseconds 
     }
     room.publish_stage();
     room.room_->lock(room.life_.locked());
-    if (act == LifeAct::kPause) {
-      room.clock_.pause(now_ns);
-      room.room_->pause(reason);
-    }
-    if (was_paused && room.life_.stage() != LifeStage::kPaused) {
-      room.clock_.resume(now_ns, room.tick_ns());
-      room.room_->resume();
-    }
+    if (act == LifeAct::kPause) room.room_->pause(reason);
+    if (was_paused && room.life_.stage() != LifeStage::kPaused) room.room_->resume();
     room.site_.logger->info("room {}: {}{}{}", room.name_, life_act_name(act),
                             reason.empty() ? "" : ": ", reason);
     if (act == LifeAct::kDrain) {
@@ -102,6 +74,14 @@ void HostedRoom::kick(std::uint16_t seat, std::string reason, Done done) {
   });
 }
 
+void HostedRoom::reserve(std::uint16_t seat, std::string identity, std::uint64_t ticks, Done done) {
+  ask(std::move(done), [seat, identity = std::move(identity), ticks](Room& room) {
+    if (room.reserve(seat, identity, ticks)) return ActResult{};
+    return ActResult{kConflict,
+                     "seat: " + std::to_string(seat) + " is held or waits for its player"};
+  });
+}
+
 void HostedRoom::rewind(std::uint64_t tick, Done done) {
   ask(std::move(done), [tick](Room& room) {
     if (room.rewind(tick)) return ActResult{};
@@ -128,7 +108,7 @@ void HostedRoom::write_snapshot(std::string path, Done done) {
     self->room_->encode_state(state);
     // The disk is for another thread; this one makes ticks.
     asio::post(self->site_.slow, [path, done, state = std::move(state)] {
-      answer(done, write_new_file(path, state));
+      answer(done, write_state_file(path, state));
     });
   };
   asio::post(strand_, std::move(work));

@@ -1,6 +1,5 @@
 #pragma once
 
-#include <algorithm>
 #include <cstdint>
 
 #include "protocol/lockstep.hpp"
@@ -35,38 +34,5 @@ constexpr std::int64_t staggered_start_ns(std::int64_t epoch_ns, std::int64_t no
   while (raster.deadline_ns(n) < now_ns) ++n;  // At most twice: both were rounded down.
   return raster.deadline_ns(n);
 }
-
-/// The time of one room: the process's, but it stands still while the room is paused.
-///
-/// Before its start it stands at the start, so that a room made now begins at its phase.
-class RoomClock {
- public:
-  explicit RoomClock(std::int64_t start_ns) : start_ns_(start_ns) {}
-
-  std::int64_t room_ns(std::int64_t process_ns) const {
-    if (paused_) return paused_at_ns_;
-    return std::max(start_ns_, process_ns - behind_ns_);
-  }
-  /// When the process has it that late. @pre not paused.
-  std::int64_t process_ns(std::int64_t room_ns) const { return room_ns + behind_ns_; }
-
-  void pause(std::int64_t process_ns) {
-    paused_at_ns_ = room_ns(process_ns);
-    paused_ = true;
-  }
-  /// Goes on where it stood, a whole number of ticks of `tick_ns` behind, so that the phase stays.
-  void resume(std::int64_t process_ns, std::int64_t tick_ns) {
-    paused_ = false;
-    const std::int64_t lost_ns = process_ns - behind_ns_ - paused_at_ns_;
-    behind_ns_ += (std::max<std::int64_t>(lost_ns, 0) + tick_ns - 1) / tick_ns * tick_ns;
-    start_ns_ = std::max(start_ns_, paused_at_ns_);  // Until then it never goes back.
-  }
-
- private:
-  std::int64_t start_ns_;
-  std::int64_t behind_ns_ = 0;
-  std::int64_t paused_at_ns_ = 0;
-  bool paused_ = false;
-};
 
 }  // namespace cycloid::server

@@ -43,14 +43,23 @@ RoomLog::RoomLog(RoomLogPlace place, protocol::LogHeader header, asio::thread_po
 
 RoomLog::~RoomLog() = default;
 
-/// "ROOM-SECONDS-SALT.log": new for each, whatever was made before.
+/// "ROOM-SECONDS-SALT.cylog": new for each, whatever was made before, and found by `verify FOLDER`.
 std::string RoomLog::new_path(std::uint64_t salt) const {
   if (place_.directory.empty()) return "";
   std::string name = place_.room;
   for (char& c : name) c = c == ':' ? '-' : c;
   name += "-" + std::to_string(unix_now_ns() / 1'000'000'000) + "-" +
-          std::to_string(salt & 0xffffff) + ".log";
+          std::to_string(salt & 0xffffff) + ".cylog";
   return std::filesystem::path(place_.directory) / name;
+}
+
+/// "MATCH-from-TICK-SALT.cylog" beside the first file, "MATCH.cylog".
+std::string RoomLog::branch_path() const {
+  if (!place_.directory.empty()) return new_path(header_.salt);
+  std::filesystem::path path = place_.path;
+  const std::string name = path.stem().string() + "-from-" + std::to_string(header_.branch_tick) +
+                           "-" + std::to_string(header_.salt & 0xffffff);
+  return path.replace_filename(name + path.extension().string()).string();
 }
 
 void RoomLog::open(const std::string& path, const protocol::LogKeyframe* first) {
@@ -77,17 +86,17 @@ void RoomLog::keyframe(std::uint64_t tick, std::uint64_t digest, std::span<const
 
 void RoomLog::branch(const protocol::LogTick& from, std::span<const std::byte> state) {
   if (writer_ == nullptr) return;
+  header_.parent_log_id = writer_->log_id();  // A rotation has given it another than `header_`'s.
   close_writer(last_);
-  header_.parent_log_id = std::exchange(header_.log_id, random_number());
+  header_.log_id = random_number();
   header_.salt = random_number();
   header_.branch_tick = from.frame.tick;
   header_.start_unix_ns = unix_now_ns();
   const protocol::LogKeyframe first{
       from.frame.tick, from.digest, from.frame.seats, {state.begin(), state.end()}};
-  const std::string beside = place_.path + "-from-" + std::to_string(from.frame.tick) + "-" +
-                             std::to_string(header_.salt & 0xffffff);
+  last_ = {from.frame.tick, from.digest, {}};
   try {
-    open(place_.directory.empty() ? beside : new_path(header_.salt), &first);
+    open(branch_path(), &first);
   } catch (const std::system_error& failure) {
     writer_ = nullptr;
     branch_error_ = failure.what();

@@ -52,11 +52,14 @@ class RoomLog final : public LogSink {
   /// Goes on in a new file of the directory. Refused where there is none.
   ActResult rotate();
 
+  /// Whether there is a file, or was one. Where there never was, a room needs no log at all.
+  bool kept() const { return writer_ != nullptr || !branch_error_.empty(); }
   /// Whether nothing more happens on the other thread.
   bool settled() const { return *pending_ == 0; }
 
  private:
   std::string new_path(std::uint64_t salt) const;
+  std::string branch_path() const;
   void open(const std::string& path, const protocol::LogKeyframe* first);
   void close_writer(const protocol::LogFooter& footer);
 
@@ -64,7 +67,7 @@ class RoomLog final : public LogSink {
   protocol::LogHeader header_;
   asio::thread_pool& slow_;
   std::shared_ptr<LogWriter> writer_;
-  protocol::LogFooter last_;  ///< The last tick that was handed over.
+  protocol::LogFooter last_;  ///< The tick that the writer's file has come to.
   std::string branch_error_;
   std::shared_ptr<std::atomic<int>> pending_ = std::make_shared<std::atomic<int>>(0);
 };

@@ -28,12 +28,10 @@ struct ServeReport {
   std::uint64_t clients = 0;   ///< Hellos that were welcomed.
   std::uint64_t refusals = 0;  ///< Connections that were told Refused, by the gate or the room.
   std::uint64_t inputs_late = 0;
-  std::uint64_t slowed_ns = 0;  ///< Time by which overload put the match behind the clock.
+  std::uint64_t slowed_ns = 0;  ///< Time by which overload or a pause put the match off.
   bool durable = true;          ///< Whether the log, where there is one, holds all ticks.
 
   bool good() const { return end == End::kDrained || end == End::kTicks; }
-  /// 0 when `good`, else 1.
-  int exit_code() const { return good() ? 0 : 1; }
 };
 
 }  // namespace cycloid::server

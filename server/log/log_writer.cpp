@@ -25,6 +25,11 @@ std::string temporary_name(const std::string& path, std::uint64_t number) {
 
 }  // namespace
 
+LogSync log_sync_of(const std::string& word) {
+  const auto found = std::find(kLogSyncNames.begin(), kLogSyncNames.end(), word);
+  return static_cast<LogSync>(found - kLogSyncNames.begin());
+}
+
 LogWriter::LogWriter(LogWriterOptions options, const protocol::LogHeader& header,
                      const protocol::LogKeyframe* first)
     : options_(std::move(options)), header_(header) {
@@ -36,7 +41,6 @@ LogWriter::LogWriter(LogWriterOptions options, const protocol::LogHeader& header
   file_ = new_file(options_.path);
   if (!file_->create() || !file_->append(record_) || !file_->publish())
     throw std::system_error(file_->code(), std::generic_category(), options_.path);
-  metrics_.bytes = record_.size();
   next_keyframe_ = header_.branch_tick + options_.keyframes.ticks_min;
   next_sync_ns_ = options_.now_ns() + std::chrono::nanoseconds(options_.interval).count();
   if (options_.threaded) thread_ = std::thread([this] { run(); });
@@ -67,11 +71,6 @@ void LogWriter::keyframe(std::uint64_t tick, std::uint64_t digest,
   const KeyframePolicy& policy = options_.keyframes;
   if (policy.bytes_per_tick != 0)
     next_keyframe_ = tick + std::max(policy.ticks_min, state.size() / policy.bytes_per_tick);
-  {
-    const std::scoped_lock lock(mutex_);
-    ++metrics_.keyframes;
-    metrics_.keyframe_bytes += state.size();
-  }
   if (rotating_) return turn_over(tick, digest, state);
   record_.clear();
   encoder_->keyframe(digest, state, record_);
@@ -106,14 +105,20 @@ void LogWriter::turn_over(std::uint64_t tick, std::uint64_t digest,
   record_.clear();
   encoder_.emplace(header_, record_);
   encoder_->first_keyframe(first, record_);
-  {
-    const std::scoped_lock lock(mutex_);
-    next_.emplace();
-    options_.path = rotating_->path();
-    next_->file = std::move(rotating_);
-    ++metrics_.rotations;
-  }
-  hand_over(false);
+  const std::scoped_lock lock(mutex_);
+  options_.path = rotating_->path();
+  std::unique_ptr<LogFile> file = std::move(rotating_);
+  if (failed_ || stop_) return;
+  // In one go with its first bytes, which any queue has room for: the writer must not find the
+  // file, and publish it, before its header.
+  if (record_.size() > options_.queue_bytes_max)
+    largest_bytes_ = std::max(largest_bytes_, record_.size());
+  next_.emplace();
+  next_->file = std::move(file);
+  next_->queue = record_;
+  waiting_bytes_ += record_.size();
+  ++handed_over_;
+  if (options_.threaded) work_.notify_one();
 }
 
 void LogWriter::close(const protocol::LogFooter& footer) {
@@ -129,27 +134,33 @@ std::string LogWriter::error() const {
   return error_;
 }
 
-LogMetrics LogWriter::metrics() const {
-  const std::scoped_lock lock(mutex_);
-  return metrics_;
-}
-
 void LogWriter::hand_over(bool wait) {
   std::unique_lock lock(mutex_);
   if (failed_ || stop_) return;
-  if (metrics_.queue_bytes + record_.size() > options_.queue_bytes_max) {
+  // One that can never fit says nothing about the disk: it waits beside what may wait.
+  if (record_.size() > options_.queue_bytes_max)
+    largest_bytes_ = std::max(largest_bytes_, record_.size());
+  const std::size_t most = options_.queue_bytes_max + largest_bytes_;
+  if (waiting_bytes_ + record_.size() > most) {
     return fail(lock, options_.path + ": the disk does not keep up: more than " +
-                          std::to_string(options_.queue_bytes_max) + " bytes wait");
+                          std::to_string(most) + " bytes wait");
   }
   protocol::Bytes& queue = next_ ? next_->queue : queue_;
   queue.insert(queue.end(), record_.begin(), record_.end());
-  metrics_.queue_bytes += record_.size();
-  metrics_.queue_bytes_most = std::max(metrics_.queue_bytes_most, metrics_.queue_bytes);
+  waiting_bytes_ += record_.size();
   const std::uint64_t mine = ++handed_over_;
   if (wait) wanted_ = mine;
-  if (!options_.threaded) return work(lock);
+  if (!options_.threaded) {
+    if (wait) work(lock);
+    return;
+  }
   work_.notify_one();
   if (wait) written_.wait(lock, [&] { return synced_ >= mine || failed_; });
+}
+
+void LogWriter::turn() {
+  std::unique_lock lock(mutex_);
+  if (!failed_ && !stopped_) work(lock);
 }
 
 void LogWriter::stop() {
@@ -184,12 +195,12 @@ void LogWriter::work(std::unique_lock<std::mutex>& lock) {
   std::optional<Next> next = std::exchange(next_, {});
   const std::uint64_t taken = handed_over_;
   const bool last = stop_;
-  const bool is_due = options_.sync == LogSync::kInterval && options_.now_ns() >= next_sync_ns_;
+  const bool is_due = options_.sync != LogSync::kNone && options_.now_ns() >= next_sync_ns_;
   const bool sync_now = taken > synced_ && (last || wanted_ > synced_ || is_due);
 
   lock.unlock();
   bool good = write_out(batch, sync_now || next);
-  std::uint64_t bytes = batch.size();
+  std::size_t bytes = batch.size();
   if (good && next) {
     file_ = std::move(next->file);
     good = file_->append(next->queue) && file_->publish();
@@ -198,8 +209,7 @@ void LogWriter::work(std::unique_lock<std::mutex>& lock) {
   lock.lock();
 
   if (!good) return fail(lock, file_->error());
-  metrics_.bytes += bytes;
-  metrics_.queue_bytes -= bytes;
+  waiting_bytes_ -= bytes;
   in_kernel_ = taken;
   if (sync_now || next) synced_ = taken;
   stopped_ = last;
@@ -210,17 +220,7 @@ bool LogWriter::write_out(const protocol::Bytes& batch, bool sync_now) {
   if (!file_->append(batch)) return false;
   if (!sync_now) return true;
   next_sync_ns_ = options_.now_ns() + std::chrono::nanoseconds(options_.interval).count();
-  return timed_sync();
-}
-
-bool LogWriter::timed_sync() {
-  const std::int64_t begin = options_.now_ns();
-  const bool good = file_->sync();
-  const auto took = static_cast<std::uint64_t>(options_.now_ns() - begin);
-  const std::scoped_lock lock(mutex_);
-  ++metrics_.syncs;
-  metrics_.sync_ns.add(took);
-  return good;
+  return file_->sync();
 }
 
 void LogWriter::fail(const std::unique_lock<std::mutex>&, const std::string& what) {

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <atomic>
 #include <chrono>
 #include <condition_variable>
@@ -16,17 +17,21 @@
 #include "protocol/log/encoder.hpp"
 #include "server/log/disk.hpp"
 #include "server/log/log_file.hpp"
-#include "server/room/histogram.hpp"
 #include "server/room/log_sink.hpp"
 
 namespace cycloid::server {
 
 /// When a tick counts as written.
 enum class LogSync : std::uint8_t {
-  kInterval,   ///< Synced every 100 ms: a power cut loses at most that; a killed process, less.
+  kInterval,   ///< Synced every 100 ms: a power cut loses that and what one sync takes.
   kEveryTick,  ///< Synced before its frame leaves; the tick waits for the disk.
   kNone,       ///< Left to the system, and synced at the end: a power cut loses what it may.
 };
+
+/// In the order of the modes.
+inline constexpr std::array<const char*, 3> kLogSyncNames = {"interval", "tick", "none"};
+/// @pre the word is one of kLogSyncNames
+LogSync log_sync_of(const std::string& word);
 
 /// How often the exact state goes into the log.
 struct KeyframePolicy {
@@ -40,26 +45,15 @@ struct LogWriterOptions {
   std::string path;
   LogSync sync = LogSync::kInterval;
   std::chrono::milliseconds interval{100};
+  /// What may wait for the disk, and beside it one record that alone is larger.
   std::size_t queue_bytes_max = std::size_t{16} << 20;
   KeyframePolicy keyframes;
   std::shared_ptr<Disk> disk = system_disk();
-  /// False: the disk is used within the calls of the room, for a simulation in one thread.
+  /// False: who made the writer calls `turn`, as a simulation in one thread does.
   bool threaded = true;
   std::function<std::int64_t()> now_ns;       ///< Steady; empty: the system's.
   std::function<std::int64_t()> unix_now_ns;  ///< For the header of a rotated log; empty: system.
   std::function<std::uint64_t()> random;      ///< For salts and ids; empty: the system's.
-};
-
-/// What a host may want to show. All since the writer was made.
-struct LogMetrics {
-  std::uint64_t bytes = 0;  ///< Written, of all files.
-  std::uint64_t syncs = 0;
-  Histogram sync_ns;
-  std::uint64_t queue_bytes = 0;       ///< Handed over and not yet written, now.
-  std::uint64_t queue_bytes_most = 0;  ///< At any time.
-  std::uint64_t keyframes = 0;
-  std::uint64_t keyframe_bytes = 0;
-  std::uint64_t rotations = 0;
 };
 
 /// Appends a match to a file, in order, from its own thread.
@@ -95,8 +89,12 @@ class LogWriter final : public LogSink {
   /// (device_or_resource_busy), or the log has ended (io_error).
   [[nodiscard]] std::error_code rotate(const std::string& path);
 
-  /// From any thread; never waits for the disk.
-  LogMetrics metrics() const;
+  /// Without a thread: does what it would do now, for what waits. Calls that have to wait for the
+  /// disk do it themselves. @pre not options.threaded
+  void turn();
+
+  /// Of the file that the next tick goes into. From the room's thread.
+  std::uint64_t log_id() const { return header_.log_id; }
 
  private:
   /// What comes after the current file.
@@ -112,7 +110,6 @@ class LogWriter final : public LogSink {
   void stop();
   void work(std::unique_lock<std::mutex>& lock);
   bool write_out(const protocol::Bytes& batch, bool sync_now);
-  bool timed_sync();
   /// The lock shows that the caller holds `mutex_`.
   void fail(const std::unique_lock<std::mutex>& lock, const std::string& what);
 
@@ -134,8 +131,9 @@ class LogWriter final : public LogSink {
   protocol::Bytes queue_;
   std::optional<Next> next_;
   std::string error_;
-  LogMetrics metrics_;
-  std::uint64_t handed_over_ = 0;  ///< Calls of `hand_over`.
+  std::size_t waiting_bytes_ = 0;  ///< Handed over and not yet written.
+  std::size_t largest_bytes_ = 0;  ///< Of the records that are larger than the queue may be.
+  std::uint64_t handed_over_ = 0;  ///< Records.
   std::uint64_t in_kernel_ = 0;    ///< How many of them are written.
   std::uint64_t synced_ = 0;       ///< How many of them are on the disk.
   std::uint64_t wanted_ = 0;       ///< How many of them somebody waits for.

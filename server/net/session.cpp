@@ -1,13 +1,9 @@
 #include "server/net/session.hpp"
 
+#include <chrono>
 #include <utility>
 
-#include "server/net/rethrow.hpp"
-
 namespace cycloid::server {
-
-// GCC 12.2 destroys aggregate temporaries of a co_await expression twice: named locals only.
-
 namespace {
 
 /// From the room's last word to the end: time for the peer to read it and hang up.
@@ -18,16 +14,14 @@ constexpr std::chrono::seconds kLinger{1};
 Session::Session(Entrant entrant, SessionPlace place)
     : entrant_(std::move(entrant)),
       place_(std::move(place)),
-      reader_wake_(place_.strand),
-      writer_wake_(place_.strand),
-      linger_(place_.strand) {}
+      pause_(place_.strand),
+      linger_(place_.strand),
+      incoming_(entrant_.stream->is_tls() ? kSessionTlsReadBytes : kSessionReadBytes) {}
 
 void Session::start() {
+  asio::error_code ignored;  // A socket that cannot be set so fails at its first read.
+  entrant_.stream->socket().non_blocking(true, ignored);
   enter();
-  auto reader = [self = shared_from_this()] { return self->read_loop(); };
-  auto writer = [self = shared_from_this()] { return self->write_loop(); };
-  asio::co_spawn(place_.strand, std::move(reader), rethrow);
-  asio::co_spawn(place_.strand, std::move(writer), rethrow);
   wake();
 }
 
@@ -39,105 +33,128 @@ void Session::enter() {
 }
 
 void Session::wake() {
-  reader_wake_.cancel();
-  writer_wake_.cancel();
-  if (lingers_ || !entrant_.stream->is_open() || !place_.room.wants_close(id_)) return;
-  lingers_ = true;
-  linger_.expires_after(kLinger);
-  linger_.async_wait([self = shared_from_this()](const asio::error_code&) { self->close(); });
+  if (!entrant_.stream->is_open()) return;
+  write();
+  read();
+  linger();
 }
 
 void Session::close() {
   if (!entrant_.stream->is_open()) return;
   place_.room.disconnect(id_);
   entrant_.stream->close();
-  reader_wake_.cancel();
-  writer_wake_.cancel();
+  pause_.cancel();
   linger_.cancel();
 }
 
-asio::awaitable<std::size_t> Session::read(asio::error_code& error) {
-  auto done = asio::redirect_error(asio::use_awaitable, error);
-  transport::Stream& stream = *entrant_.stream;
-  if (stream.is_tls()) {
-    tls_bytes_.resize(kSessionTlsReadBytes);
-    const auto target = asio::buffer(tls_bytes_);
-    const std::size_t bytes = co_await stream.async_read_some(target, done);
-    co_return bytes;
+void Session::read() {
+  if (reading_ || reader_done_ || !entrant_.stream->is_open()) return;
+  if (!place_.room.wants_bytes(id_)) return pause();  // They wait in the peer's network.
+  if (paused_) {
+    pause_.cancel();
+    return;
   }
-  // No bytes are there to read before they are read, so one array does for all of a room.
-  const auto scratch = asio::buffer(place_.scratch.data(), place_.scratch.size());
-  for (;;) {
-    co_await stream.socket().async_wait(asio::ip::tcp::socket::wait_read, done);
-    if (error) co_return 0;
-    const std::size_t bytes = stream.socket().read_some(scratch, error);
-    if (error != asio::error::would_block) co_return bytes;
-  }
+  reading_ = true;
+  auto handler = [self = shared_from_this()](const asio::error_code& error, std::size_t bytes) {
+    self->on_read(error, bytes);
+  };
+  entrant_.stream->async_read_some(asio::buffer(incoming_),
+                                   asio::bind_executor(place_.strand, std::move(handler)));
 }
 
-asio::awaitable<void> Session::read_loop() {
-  asio::error_code error;  // Peers going away is an expected event, so no exceptions here.
-  auto done = asio::redirect_error(asio::use_awaitable, error);
-  transport::Stream& stream = *entrant_.stream;
-  stream.socket().non_blocking(true, error);
-  while (stream.is_open()) {
-    if (!place_.room.wants_bytes(id_)) {  // Until the next tick they wait in the peer's network.
-      reader_wake_.expires_at(asio::steady_timer::time_point::max());
-      co_await reader_wake_.async_wait(done);
-      continue;
-    }
-    const std::size_t bytes = co_await read(error);
-    if (error) break;
-    const std::span<const std::byte> source = stream.is_tls() ? tls_bytes_ : place_.scratch;
-    place_.room.receive(id_, source.first(bytes));
-    wake();
+void Session::pause() {
+  if (std::exchange(paused_, true)) return;
+  pause_.expires_at(asio::steady_timer::time_point::max());
+  pause_.async_wait([self = shared_from_this()](const asio::error_code&) {
+    self->paused_ = false;
+    self->read();
+  });
+}
+
+void Session::on_read(const asio::error_code& error, std::size_t bytes) {
+  reading_ = false;
+  if (!entrant_.stream->is_open()) return;
+  if (!error) {
+    place_.room.receive(id_, std::span<const std::byte>(incoming_).first(bytes));
+    return wake();
   }
-  // Who has the last word still to come may hang up its own side; the writer, or the end of
+  // Who has the last word still to come may hang up its own side; the last write, or the end of
   // lingering, closes then.
   reader_done_ = true;
   const bool last_word_waits = lingers_ && transport::is_end(error) && !last_word_said_;
   if (!last_word_waits) close();
 }
 
-asio::awaitable<void> Session::write(std::vector<Shared> output, asio::error_code& error) {
-  auto done = asio::redirect_error(asio::use_awaitable, error);
-  transport::Stream& stream = *entrant_.stream;
-  if (!stream.is_tls()) {
-    std::vector<asio::const_buffer> buffers;
-    for (const Shared& bytes : output) buffers.emplace_back(bytes->data(), bytes->size());
-    co_await asio::async_write(stream.socket(), buffers, done);
-    co_return;
+void Session::write() {
+  while (!writing_ && entrant_.stream->is_open()) {
+    if (!place_.room.has_output(id_)) {
+      if (place_.room.wants_close(id_)) say_last_word();
+      return;
+    }
+    output_ = place_.room.take_output(id_);
+    const asio::error_code error = write_now();
+    if (error == asio::error::would_block) {
+      write_rest();
+    } else if (error) {
+      close();
+    }
   }
-  // Of several buffers each would be a record and a write of its own.
-  protocol::Bytes joined;
-  for (const Shared& bytes : output) joined.insert(joined.end(), bytes->begin(), bytes->end());
-  const auto source = asio::buffer(joined);
-  co_await asio::async_write(stream, source, done);
 }
 
-asio::awaitable<void> Session::write_loop() {
+/// Without an error all is written.
+asio::error_code Session::write_now() {
   asio::error_code error;
-  auto done = asio::redirect_error(asio::use_awaitable, error);
-  transport::Stream& stream = *entrant_.stream;
-  while (stream.is_open()) {
-    if (place_.room.has_output(id_)) {
-      std::vector<Shared> output = place_.room.take_output(id_);
-      co_await write(std::move(output), error);
-      if (error) break;
-      continue;
+  if (entrant_.stream->is_tls()) return asio::error::would_block;
+  buffers_.clear();
+  for (const Shared& bytes : output_) buffers_.emplace_back(bytes->data(), bytes->size());
+  rest_ = buffers_;
+  while (!rest_.empty()) {
+    std::size_t bytes = entrant_.stream->socket().write_some(rest_, error);
+    if (error) return error;
+    while (!rest_.empty() && bytes >= rest_.front().size()) {
+      bytes -= rest_.front().size();
+      rest_ = rest_.subspan(1);
     }
-    if (place_.room.wants_close(id_)) {
-      // The peer reads to the end and hangs up; closing here would reset what it has not read.
-      last_word_said_ = true;
-      asio::error_code ignored;
-      stream.socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
-      if (!reader_done_) co_return;
-      break;
-    }
-    writer_wake_.expires_at(asio::steady_timer::time_point::max());
-    co_await writer_wake_.async_wait(done);
+    if (!rest_.empty()) rest_.front() += bytes;
   }
-  close();
+  output_.clear();
+  return error;
+}
+
+void Session::write_rest() {
+  writing_ = true;
+  auto handler = [self = shared_from_this()](const asio::error_code& error, std::size_t) {
+    self->on_written(error);
+  };
+  auto bound = asio::bind_executor(place_.strand, std::move(handler));
+  if (!entrant_.stream->is_tls()) {
+    return asio::async_write(entrant_.stream->socket(), rest_, std::move(bound));
+  }
+  joined_.clear();
+  for (const Shared& bytes : output_) joined_.insert(joined_.end(), bytes->begin(), bytes->end());
+  asio::async_write(*entrant_.stream, asio::buffer(joined_), std::move(bound));
+}
+
+void Session::on_written(const asio::error_code& error) {
+  writing_ = false;
+  output_.clear();
+  if (error) return close();
+  wake();
+}
+
+void Session::say_last_word() {
+  if (std::exchange(last_word_said_, true)) return;
+  // The peer reads to the end and hangs up; closing here would reset what it has not read.
+  asio::error_code ignored;
+  entrant_.stream->socket().shutdown(asio::ip::tcp::socket::shutdown_send, ignored);
+  if (reader_done_) close();
+}
+
+void Session::linger() {
+  if (lingers_ || !entrant_.stream->is_open() || !place_.room.wants_close(id_)) return;
+  lingers_ = true;
+  linger_.expires_after(kLinger);
+  linger_.async_wait([self = shared_from_this()](const asio::error_code&) { self->close(); });
 }
 
 }  // namespace cycloid::server

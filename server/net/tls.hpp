@@ -12,16 +12,14 @@
 
 namespace cycloid::server {
 
-/// There is no "if the client likes": whoever sits between the two could then make both like none.
-enum class TlsMode : std::uint8_t { kOff, kRequired };
-
 /// Both in PEM. The chain begins with the server's own certificate.
 struct TlsFiles {
   std::string certificate_chain;
   std::string private_key;
 };
 
-/// The server's certificate: TLS 1.2 and later, ciphers with forward secrecy only, no compression,
+/// The server's certificate. There is no "if the client likes": whoever sits between the two could
+/// then make both like none. TLS 1.2 and later, ciphers with forward secrecy only, no compression,
 /// no renegotiation, no resumption. May be used from several threads.
 class ServerTls {
  public:

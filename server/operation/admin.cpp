@@ -2,13 +2,15 @@
 
 #include <sodium.h>
 
-#include <fstream>
 #include <future>
-#include <iterator>
 #include <utility>
 
+#include "protocol/text.hpp"
 #include "scenes/simulation.hpp"
+#include "server/admission/constant_time.hpp"
+#include "server/admission/random.hpp"
 #include "server/operation/admin_fields.hpp"
+#include "server/operation/text_file.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -39,16 +41,13 @@ HttpReply wrong_method(const std::string& allowed) {
 
 Json to_json(const HostedRoom& room) {
   const RoomMeters& meters = room.meters();
-  char digest[17];
-  (void)std::snprintf(digest, sizeof digest, "%016llx",
-                      static_cast<unsigned long long>(meters.digest.get()));
   return {{"name", room.name()},
           {"stage", life_stage_name(room.stage())},
           {"locked", room.locked()},
           {"scene", room.scene_name()},
           {"seats", room.seats()},
           {"tick", meters.tick.get()},
-          {"digest", digest},
+          {"digest", protocol::hex16(meters.digest.get())},
           {"clients", meters.clients.get()},
           {"durable", meters.durable.get() == 1}};
 }
@@ -74,6 +73,7 @@ struct Admin::Act {
 Admin::Admin(Host& host, AdminOptions options) : host_(host), options_(std::move(options)) {}
 
 bool equal_secrets(const std::string& a, const std::string& b) {
+  ready_sodium();
   // Hashed first, so that the time does not depend on their lengths either.
   std::array<unsigned char, 32> hash_a{};
   std::array<unsigned char, 32> hash_b{};
@@ -83,16 +83,16 @@ bool equal_secrets(const std::string& a, const std::string& b) {
   };
   hash(hash_a, a);
   hash(hash_b, b);
-  return sodium_memcmp(hash_a.data(), hash_b.data(), hash_a.size()) == 0;
+  return equal_in_constant_time(std::as_bytes(std::span(hash_a)), std::as_bytes(std::span(hash_b)));
 }
 
 std::string read_admin_token(const std::string& path, std::string& mistake) {
-  std::ifstream stream(path, std::ios::binary);
-  std::string text{std::istreambuf_iterator<char>(stream), {}};
-  if (!stream) {
+  const auto read = read_text_file(path);
+  if (!read) {
     mistake = path + ": cannot be read";
     return "";
   }
+  std::string text = *read;
   const char* kSpace = " \t\r\n";
   text.erase(0, text.find_first_not_of(kSpace));
   text.erase(text.find_last_not_of(kSpace) + 1);
@@ -162,7 +162,7 @@ HttpReply Admin::route(const HttpRequest& request, Act& act) {
     if (!posts) return wrong_method("POST");
     act.verb = request.path.substr(std::string("/admin/").size());
     const bool drains = act.verb == "drain";
-    const auto otherwise = static_cast<std::uint64_t>(options_.drain.count());
+    const auto otherwise = static_cast<std::uint64_t>(host_.drain_time().count());
     const std::uint64_t deadline_ms =
         drains ? act.fields.number_or("deadline_ms", otherwise, kDeadlineMsMax) : 0;
     if (const std::string why = act.fields.mistake(); !why.empty()) return reply_of({400, why});
@@ -193,7 +193,7 @@ HttpReply Admin::act_on_room(const HttpRequest& request, Act& act) {
   }
   act.verb = rest.substr(slash + 1);
   const bool known = life_act_of(act.verb) || act.verb == "kick" || act.verb == "snapshot" ||
-                     act.verb == "rewind" || act.verb == "rotate";
+                     act.verb == "rewind" || act.verb == "rotate" || act.verb == "reserve";
   if (!known) {
     const std::string verb = std::exchange(act.verb, "").substr(0, 64);
     return reply_of({404, "path: a room has no act \"" + verb + "\""});
@@ -237,6 +237,35 @@ ActResult Admin::snapshot(HostedRoom& room, Act& act) {
   });
 }
 
+/// "", or that the room has no such seat.
+static std::string seat_mistake(const HostedRoom& room, std::uint16_t seat) {
+  if (seat < room.seats()) return "";
+  return "seat: it is " + std::to_string(seat) + ", and the room has " +
+         std::to_string(room.seats()) + " from 0";
+}
+
+ActResult Admin::kick(HostedRoom& room, Act& act) {
+  const auto seat = static_cast<std::uint16_t>(act.fields.number("seat", scenes::kSeatsMax - 1));
+  const std::string reason = act.fields.text_or("reason", "by an admin");
+  if (const std::string why = act.fields.mistake(); !why.empty()) return {400, why};
+  if (const std::string why = seat_mistake(room, seat); !why.empty()) return {404, why};
+  return wait([&](HostedRoom::Done done) { room.kick(seat, reason, std::move(done)); });
+}
+
+ActResult Admin::reserve(HostedRoom& room, Act& act) {
+  const auto seat = static_cast<std::uint16_t>(act.fields.number("seat", scenes::kSeatsMax - 1));
+  const std::string identity = act.fields.text_or("identity", "");
+  const std::uint64_t ticks = act.fields.number("ticks", kTickMax);
+  if (const std::string why = act.fields.mistake(); !why.empty()) return {400, why};
+  if (ticks == 0) return {400, "ticks: it is 0, and must be at least 1"};
+  if (identity.size() > kIdentityBytesMax) {
+    return {400, "identity: it has " + std::to_string(identity.size()) + " bytes, of at most " +
+                     std::to_string(kIdentityBytesMax)};
+  }
+  if (const std::string why = seat_mistake(room, seat); !why.empty()) return {404, why};
+  return wait([&](HostedRoom::Done done) { room.reserve(seat, identity, ticks, std::move(done)); });
+}
+
 ActResult Admin::perform(HostedRoom& room, Act& act) {
   AdminFields& fields = act.fields;
   if (act.verb == "snapshot") return snapshot(room, act);
@@ -249,20 +278,12 @@ ActResult Admin::perform(HostedRoom& room, Act& act) {
     if (const std::string why = fields.mistake(); !why.empty()) return {400, why};
     return wait([&](HostedRoom::Done done) { room.rewind(tick, std::move(done)); });
   }
-  if (act.verb == "kick") {
-    const auto seat = static_cast<std::uint16_t>(fields.number("seat", scenes::kSeatsMax - 1));
-    const std::string reason = fields.text_or("reason", "by an admin");
-    if (const std::string why = fields.mistake(); !why.empty()) return {400, why};
-    if (seat >= room.seats()) {
-      return {404, "seat: it is " + std::to_string(seat) + ", and the room has " +
-                       std::to_string(room.seats()) + " from 0"};
-    }
-    return wait([&](HostedRoom::Done done) { room.kick(seat, reason, std::move(done)); });
-  }
+  if (act.verb == "kick") return kick(room, act);
+  if (act.verb == "reserve") return reserve(room, act);
   const LifeAct life = *life_act_of(act.verb);
   const bool ends = life == LifeAct::kEnd || life == LifeAct::kDrain;
   const std::string reason = ends ? fields.text_or("reason", "by an admin") : "";
-  const auto otherwise = static_cast<std::uint64_t>(options_.drain.count());
+  const auto otherwise = static_cast<std::uint64_t>(host_.drain_time().count());
   const std::uint64_t deadline_ms =
       life == LifeAct::kDrain ? fields.number_or("deadline_ms", otherwise, kDeadlineMsMax) : 0;
   if (const std::string why = fields.mistake(); !why.empty()) return {400, why};

@@ -17,7 +17,6 @@ inline constexpr std::size_t kAdminTokenBytesMin = 16;
 struct AdminOptions {
   std::string token;                         ///< @pre at least kAdminTokenBytesMin bytes.
   std::string snapshot_directory;            ///< "": snapshots are refused.
-  std::chrono::milliseconds drain{10000};    ///< Where a drain or an end names no deadline.
   std::chrono::milliseconds patience{5000};  ///< With a room that does not answer.
   /// Reads the configuration again; may be empty.
   std::function<ActResult()> reload;
@@ -42,6 +41,8 @@ class Admin {
   ActResult perform(HostedRoom& room, Act& act);
   ActResult make(Act& act);
   ActResult snapshot(HostedRoom& room, Act& act);
+  ActResult kick(HostedRoom& room, Act& act);
+  ActResult reserve(HostedRoom& room, Act& act);
   ActResult wait(const std::function<void(HostedRoom::Done)>& ask) const;
   void audit(const HttpRequest& request, const Act& act, const HttpReply& reply) const;
 

@@ -57,6 +57,7 @@ struct RoomMeters {
   Meter joined;   ///< Welcomed since the room was made.
   RefusalMeters refusals;
   Meter desyncs;
+  Meter inquiries_skipped;  ///< Desyncs beyond a bound, into which nobody looks.
   Meter inputs_late;
   Meter inputs_early;
   Meter inputs_replaced;  ///< Repeated or neutral where somebody sits.
@@ -83,6 +84,7 @@ struct HostMeters {
   Meter gate_bytes;        ///< Heard before an admission or a refusal.
   Meter rooms_made;
   Meter rooms_ended;
+  Meter reports_dropped;  ///< Of desyncs, over a bound or refused by the disk.
   DurationMeter log_sync;
 };
 

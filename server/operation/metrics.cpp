@@ -64,6 +64,8 @@ constexpr RoomNumber kRoomNumbers[] = {
      &RoomMeters::joined},
     {"cycloid_room_hash_mismatches_total", "Digests of clients that differed.", MetricType::Counter,
      &RoomMeters::desyncs},
+    {"cycloid_room_desync_inquiries_skipped_total", "Desyncs beyond a bound, not looked into.",
+     MetricType::Counter, &RoomMeters::inquiries_skipped},
     {"cycloid_room_inputs_late_total", "Inputs for ticks already made.", MetricType::Counter,
      &RoomMeters::inputs_late},
     {"cycloid_room_inputs_early_total", "Inputs beyond the window.", MetricType::Counter,
@@ -76,7 +78,7 @@ constexpr RoomNumber kRoomNumbers[] = {
      &RoomMeters::bytes_out},
     {"cycloid_room_catch_up_ticks_total", "Ticks made in one go behind another.",
      MetricType::Counter, &RoomMeters::catch_up_ticks},
-    {"cycloid_room_slowed_seconds_total", "Time by which overload put the match behind its clock.",
+    {"cycloid_room_slowed_seconds_total", "Time by which overload or a pause put the match off.",
      MetricType::Counter, &RoomMeters::slowed_ns, 1e-9},
     {"cycloid_room_encodes_total", "States that were encoded for clients.", MetricType::Counter,
      &RoomMeters::encodes},
@@ -147,6 +149,8 @@ void add_host(const Host& host, std::vector<MetricFamily>& families) {
   add("cycloid_rooms_made_total", "Rooms ever.", MetricType::Counter, count(meters.rooms_made));
   add("cycloid_rooms_ended_total", "Rooms that are over.", MetricType::Counter,
       count(meters.rooms_ended));
+  add("cycloid_desync_reports_dropped_total", "Reports over a bound, or refused by the disk.",
+      MetricType::Counter, count(meters.reports_dropped));
   add("cycloid_draining", "1 from the first word of a drain on.", MetricType::Gauge,
       host.draining() ? 1.0 : 0.0);
   MetricFamily sync =

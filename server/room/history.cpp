@@ -5,6 +5,20 @@
 
 namespace cycloid::server {
 
+const Shared& MadeTick::bytes(bool packed) const {
+  Shared& bytes = said[packed ? 1 : 0];
+  if (bytes != nullptr) return bytes;
+  protocol::Bytes made =
+      packed ? protocol::encode_packed(frame) : protocol::encode(protocol::ServerMessage(frame));
+  if (says_digest) {
+    const protocol::Digest after{frame.tick, digest};
+    const auto behind = protocol::encode(protocol::ServerMessage(after));
+    made.insert(made.end(), behind.begin(), behind.end());
+  }
+  bytes = std::make_shared<const protocol::Bytes>(std::move(made));
+  return bytes;
+}
+
 void FrameRing::push(MadeTick made) {
   ticks_.push_back(std::move(made));
   if (ticks_.size() > frames_max_) ticks_.pop_front();
@@ -33,6 +47,12 @@ std::shared_ptr<const ExactState> KeyframeRing::at_or_before(std::uint64_t tick)
   const auto after =
       std::ranges::find_if(states_, [&](const auto& state) { return state->tick() > tick; });
   return after == states_.begin() ? nullptr : *std::prev(after);
+}
+
+std::shared_ptr<const ExactState> KeyframeRing::from(std::uint64_t tick) const {
+  const auto found =
+      std::ranges::find_if(states_, [&](const auto& state) { return state->tick() >= tick; });
+  return found == states_.end() ? nullptr : *found;
 }
 
 void KeyframeRing::drop_after(std::uint64_t tick) {

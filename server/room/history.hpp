@@ -1,5 +1,6 @@
 #pragma once
 
+#include <array>
 #include <cstddef>
 #include <cstdint>
 #include <deque>
@@ -14,7 +15,12 @@ namespace cycloid::server {
 struct MadeTick {
   protocol::InputFrame frame;
   std::uint64_t digest = 0;  ///< After it.
-  Shared bytes;              ///< The frame, and behind it the digest where one is due.
+  bool says_digest = false;  ///< To lockstep clients, behind the frame.
+  mutable std::array<Shared, 2> said{};
+
+  /// The frame, packed or not, and behind it the digest where one is due: encoded when a client is
+  /// the first to hear of it, and then for all.
+  const Shared& bytes(bool packed) const;
 };
 
 /// The last ticks that were made, without a gap; the oldest go when there are too many.
@@ -43,6 +49,8 @@ class KeyframeRing {
   void push(std::shared_ptr<const ExactState> state, std::uint64_t needed_tick);
   /// The newest of `tick` or before, or null.
   std::shared_ptr<const ExactState> at_or_before(std::uint64_t tick) const;
+  /// The oldest of `tick` or later, or null.
+  std::shared_ptr<const ExactState> from(std::uint64_t tick) const;
   void drop_after(std::uint64_t tick);
   void drop_before(std::uint64_t tick);
   std::size_t bytes() const { return bytes_; }

@@ -33,6 +33,8 @@ class RoomEvidence {
   virtual const protocol::InputFrame* frame_at(std::uint64_t tick) const = 0;  ///< Or null.
   /// The newest exact state of `tick` or before that is kept, or null. All frames since are kept.
   virtual std::shared_ptr<const ExactState> state_at_or_before(std::uint64_t tick) const = 0;
+  /// The oldest exact state of `tick` or later that is kept, or null.
+  virtual std::shared_ptr<const ExactState> state_from(std::uint64_t tick) const = 0;
 };
 
 /// What to send to the peer; or, where `error` is not "", why it is sent away with kBadMessage.
@@ -52,18 +54,20 @@ class DesyncInquiry {
   virtual InquiryAnswer on_state_part(PeerId peer, const protocol::StatePart& part,
                                       const RoomEvidence& evidence) = 0;
   virtual void on_gone(PeerId peer) = 0;
+  /// The match ends, or goes on from an earlier tick: what is known by now of what was asked is all
+  /// that there will be. The evidence is still that of before, but for its `tick`.
+  virtual void on_break(const std::string& why, const RoomEvidence& evidence) = 0;
 
-  /// Every tick that was made, before any client hears of it; `simulation` is after it.
-  virtual void on_tick(const protocol::InputFrame& frame, std::uint64_t digest,
-                       const scenes::Simulation& simulation) {
-    (void)frame, (void)digest, (void)simulation;
-  }
-  /// Every digest that a client answered with, equal or not.
+  /// Every digest that a client answered with where it was asked to, equal or not.
   virtual void on_digest(PeerId peer, std::uint64_t tick, std::uint64_t digest) {
     (void)peer, (void)tick, (void)digest;
   }
   /// What has come up since, such as a report; asked once after every tick.
-  virtual std::vector<std::pair<PeerId, protocol::ServerMessage>> take_messages() { return {}; }
+  virtual std::vector<std::pair<PeerId, protocol::ServerMessage>> take_messages(
+      const RoomEvidence& evidence) {
+    (void)evidence;
+    return {};
+  }
 };
 
 }  // namespace cycloid::server

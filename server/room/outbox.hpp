@@ -35,8 +35,6 @@ class Outbox {
   /// Frames of ticks up to the state's are dropped: it takes their place.
   void begin_state(std::shared_ptr<const ExactState> state);
   bool state_waits() const { return state_ != nullptr; }
-  /// No part of a state has left, and none is due before the next `take`.
-  bool state_untouched() const { return state_ == nullptr || next_part_ == 0; }
   void drop_frames_and_state();
   void clear();
 

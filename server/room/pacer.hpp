@@ -41,11 +41,13 @@ class Pacer {
   }
   bool paused() const { return paused_; }
   void poll_paused(std::int64_t now_ns) { poll_ns_ = now_ns + kPausedPollNs; }
-  /// Returns by how long the match stood still.
+  /// Returns by how long the match is put off: whole ticks, so that its phase stays.
   std::int64_t resume(std::int64_t now_ns) {
     paused_ = false;
-    schedule_.delay(now_ns - paused_ns_);
-    return now_ns - paused_ns_;
+    const std::int64_t stood_ns = std::max<std::int64_t>(now_ns - paused_ns_, 0);
+    const std::int64_t by_ns = (stood_ns + tick_ns_ - 1) / tick_ns_ * tick_ns_;
+    schedule_.delay(by_ns);
+    return by_ns;
   }
 
   void delay(std::int64_t by_ns) { schedule_.delay(by_ns); }

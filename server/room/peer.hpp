@@ -6,10 +6,11 @@
 
 #include "protocol/codec.hpp"
 #include "protocol/state/state_feed.hpp"
+#include "server/admission/refill_bucket.hpp"
+#include "server/room/act_budget.hpp"
 #include "server/room/admission.hpp"
 #include "server/room/options.hpp"
 #include "server/room/outbox.hpp"
-#include "server/room/rates.hpp"
 #include "server/room/seats.hpp"
 
 namespace cycloid::server {
@@ -18,14 +19,26 @@ enum class PeerStage : std::uint8_t { kGreeting, kPlaying, kClosing };
 
 /// What a room knows of one connection.
 struct Peer {
-  explicit Peer(const Limits& limits)
-      : outbox(limits.queue_bytes_max),
+  Peer(const Limits& limits, std::int64_t now_ns)
+      : connected_ns(now_ns),
+        heard_ns(now_ns),
+        outbox(limits.queue_bytes_max),
         parts_left(limits.state_parts_per_tick_max),
-        messages_rate(limits.messages_per_s, 2 * limits.messages_per_s),
-        bytes_rate(limits.bytes_per_s, 2 * limits.bytes_per_s),
+        messages_rate(twice_at_once(limits.messages_per_s), now_ns),
+        bytes_rate(twice_at_once(limits.bytes_per_s), now_ns),
         desyncs(limits.resyncs_max, limits.resync_window),
         overruns(limits.resyncs_max, limits.resync_window) {}
 
+  static Rate twice_at_once(std::uint64_t per_s) {
+    return {static_cast<std::uint32_t>(per_s), static_cast<std::uint32_t>(2 * per_s)};
+  }
+  /// New rates begin with all that they allow at once; what was done counts on against new budgets.
+  void set_limits(const Limits& limits, std::int64_t now_ns) {
+    messages_rate = RefillBucket(twice_at_once(limits.messages_per_s), now_ns);
+    bytes_rate = RefillBucket(twice_at_once(limits.bytes_per_s), now_ns);
+    desyncs.set_bounds(limits.resyncs_max, limits.resync_window);
+    overruns.set_bounds(limits.resyncs_max, limits.resync_window);
+  }
   bool playing() const { return stage == PeerStage::kPlaying; }
 
   PeerStage stage = PeerStage::kGreeting;
@@ -35,8 +48,8 @@ struct Peer {
   std::uint32_t messages = 0;  ///< Since the last tick.
   Outbox outbox;
   std::uint32_t parts_left;  ///< Of a state, until the next tick.
-  RateBucket messages_rate;
-  RateBucket bytes_rate;
+  RefillBucket messages_rate;
+  RefillBucket bytes_rate;
   ActBudget desyncs;
   ActBudget overruns;
 
@@ -44,6 +57,7 @@ struct Peer {
   std::string build;
   Role role = Role::kPlayer;
   protocol::Mode mode = protocol::Mode::kLockstep;
+  bool packs = false;  ///< Understands packed frames.
   protocol::Profile profile = protocol::Profile::kExact;
   std::int32_t seat = protocol::kSpectator;
   bool unseated = false;  ///< Had a seat; the inputs that it sent before it knew are no mistake.

@@ -2,16 +2,9 @@
 
 #include <algorithm>
 
+#include "server/admission/constant_time.hpp"
+
 namespace cycloid::server {
-namespace {
-
-bool equal_in_constant_time(const ResumeSecret& ours, std::span<const std::byte> theirs) {
-  std::byte difference{0};
-  for (std::size_t i = 0; i < ours.size(); ++i) difference |= ours[i] ^ theirs[i];
-  return difference == std::byte{0};
-}
-
-}  // namespace
 
 void ResumeTokens::rotate(std::size_t seat, const ResumeSecret& secret,
                           std::span<const std::byte> used) {

@@ -4,6 +4,8 @@
 #include <limits>
 #include <utility>
 
+#include "protocol/text.hpp"
+
 namespace cycloid::server {
 namespace {
 
@@ -19,14 +21,6 @@ std::uint64_t ticks_of_3_s(std::uint32_t rate_millihertz) {
 }
 
 }  // namespace
-
-std::string printable(const std::string& text) {
-  std::string line = text;
-  for (char& c : line) {
-    if (static_cast<unsigned char>(c) < 0x20 || c == 0x7f) c = '?';
-  }
-  return line;
-}
 
 Room::Room(RoomOptions options, scenes::Simulation simulation, RoomHooks hooks)
     : options_(std::move(options)),
@@ -45,13 +39,21 @@ Room::Room(RoomOptions options, scenes::Simulation simulation, RoomHooks hooks)
   keyframes_.push(states_.of(simulation_, digest_), 0);
 }
 
+std::size_t Room::connections() const {
+  const auto counts = [](const auto& peer) { return peer.second.stage != PeerStage::kClosing; };
+  return static_cast<std::size_t>(std::ranges::count_if(peers_, counts));
+}
+
+bool Room::takes_connections() const {
+  const std::size_t most = options_.limits.connections_max;
+  return peers_.size() < most || connections() < most;
+}
+
 PeerId Room::connect() {
-  std::size_t connections = 0;
-  for (const auto& [id, peer] : peers_) connections += peer.stage == PeerStage::kClosing ? 0 : 1;
+  const std::size_t connections = this->connections();
 
   const PeerId id = ++last_id_;
-  Peer& peer = peers_.emplace(id, Peer(options_.limits)).first->second;
-  peer.connected_ns = peer.heard_ns = hooks_.now_ns();
+  Peer& peer = peers_.emplace(id, Peer(options_.limits, hooks_.now_ns())).first->second;
   if (state_ == RoomState::kFaulted) {
     refuse(id, peer, protocol::Refusal::kFaulted, end_reason_);
   } else if (state_ != RoomState::kRunning) {
@@ -124,6 +126,7 @@ void Room::close_overdue() {
     const std::int64_t waited = now - (greets ? peer.connected_ns : peer.heard_ns);
     const std::int64_t most = (greets ? limits.handshake : limits.idle).count();
     if (peer.stage == PeerStage::kClosing || waited < most) continue;
+    if (!greets && pacer_.paused()) continue;  // While nothing happens it has nothing to say.
     const std::string what = greets ? "no hello for " : "no message for ";
     refuse(id, peer, protocol::Refusal::kTooSlow,
            what + std::to_string(waited / 1'000'000) + " ms, of at most " +
@@ -137,9 +140,9 @@ void Room::refuse(PeerId id, Peer& peer, protocol::Refusal code, const std::stri
   if (peer.stage == PeerStage::kClosing) return;
   ++statistics_.refusals;
   ++statistics_.refusals_by_code[static_cast<std::size_t>(code)];
-  notice(Notice::Kind::kRefusal, "client " + std::to_string(id) + " \"" + printable(peer.name) +
-                                     "\" refused: " + refusal_name(code) + ": " +
-                                     printable(reason));
+  notice(Notice::Kind::kRefusal,
+         "client " + std::to_string(id) + " \"" + protocol::printable(peer.name) +
+             "\" refused: " + protocol::refusal_name(code) + ": " + protocol::printable(reason));
   give_up_seat(peer, seat_event);
   if (peer.playing() && hooks_.inquiry != nullptr) hooks_.inquiry->on_gone(id);
   peer.stage = PeerStage::kClosing;
@@ -154,6 +157,7 @@ void Room::end(RoomState state, const std::string& reason) {
   end_reason_ = reason;
   if (hooks_.log != nullptr) hooks_.log->close({simulation_.tick(), digest_, {}});
   check_log();
+  break_inquiries("the match ended before it had sent its state");
   const protocol::ServerMessage digest = protocol::Digest{simulation_.tick(), digest_};
   const bool digest_sent = simulation_.tick() % options_.limits.digest_ticks == 0;
   const auto bye = std::make_shared<const protocol::Bytes>(
@@ -178,8 +182,8 @@ void Room::end(RoomState state, const std::string& reason) {
       peer.stage = PeerStage::kClosing;
     }
   }
-  notice(Notice::Kind::kEnd,
-         "closed at tick " + std::to_string(simulation_.tick()) + ": " + printable(reason));
+  notice(Notice::Kind::kEnd, "closed at tick " + std::to_string(simulation_.tick()) + ": " +
+                                 protocol::printable(reason));
 }
 
 void Room::give_up_seat(Peer& peer, protocol::EventKind event) {
@@ -206,8 +210,9 @@ void Room::leave(PeerId id, Peer& peer, const std::string& why, protocol::EventK
   give_up_seat(peer, seat_event);
   if (hooks_.inquiry != nullptr) hooks_.inquiry->on_gone(id);
   peer.stage = PeerStage::kClosing;
-  notice(Notice::Kind::kLeave, "client " + std::to_string(id) + " \"" + printable(peer.name) +
-                                   "\" left: " + printable(why));
+  notice(Notice::Kind::kLeave, "client " + std::to_string(id) + " \"" +
+                                   protocol::printable(peer.name) +
+                                   "\" left: " + protocol::printable(why));
 }
 
 void Room::answer(PeerId id, Peer& peer, const protocol::ServerMessage& message) {

@@ -5,6 +5,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <map>
 #include <optional>
 #include <span>
@@ -137,9 +138,8 @@ class Room {
   bool rewind(std::uint64_t tick);
   /// Tells all clients that the server goes away.
   void announce_drain(std::chrono::milliseconds within, const std::string& reason);
-  bool tell(PeerId id, protocol::RoomNotice said);
   /// Of what comes from now on; queues that are there keep their bounds.
-  void set_limits(const Limits& limits) { options_.limits = limits; }
+  void set_limits(const Limits& limits);
   void encode_state(std::vector<std::byte>& into);  ///< The exact one, after `tick()`.
 
   RoomState state() const { return state_; }
@@ -147,6 +147,8 @@ class Room {
   std::uint64_t tick() const { return simulation_.tick(); }
   std::uint64_t digest() const { return digest_; }
   std::size_t peers() const { return peers_.size(); }
+  /// Whether `connect` would take one more, as far as their number goes.
+  bool takes_connections() const;
   const SeatTable& seats() const { return seats_; }
   bool locked() const { return locked_; }
   bool paused() const { return pacer_.paused(); }
@@ -157,6 +159,7 @@ class Room {
   class Evidence;
 
   // room.cpp: connections, and how they end.
+  std::size_t connections() const;
   void close_overdue();
   /// `seat_event`: what becomes of its seat.
   void refuse(PeerId id, Peer& peer, protocol::Refusal code, const std::string& reason,
@@ -190,6 +193,7 @@ class Room {
   void on_state_part(PeerId id, Peer& peer, const protocol::StatePart& part);
   void on_inquiry(PeerId id, Peer& peer, InquiryAnswer said);
   void pass_inquiry_messages();
+  void break_inquiries(const std::string& why);
 
   // room_tick.cpp: what happens in a tick.
   bool waits_for_input(std::int64_t now_ns);
@@ -208,7 +212,7 @@ class Room {
   std::uint64_t visible_tick(const Peer& peer) const;
   void publish();
   void send_snapshot(Peer& peer);
-  void send_frames(PeerId id, Peer& peer);
+  void send_frames(PeerId id, Peer& peer, std::int64_t now_ns);
   void send_margins();
   void want_state(Peer& peer);
   void overrun(PeerId id, Peer& peer);
@@ -217,6 +221,11 @@ class Room {
   void tell_all(protocol::NoticeKind kind, std::uint64_t value, const std::string& text);
 
   // room_rewind.cpp
+  /// Whether the tick may be of a branch that is gone, in what a client says of it: it may not have
+  /// heard of the rewind when it said so.
+  bool was_taken_back(std::uint64_t tick) const {
+    return tick > rewound_to_ && tick <= rewound_from_;
+  }
   bool replay_to(std::uint64_t tick);
   void reconcile_seats(std::uint64_t tick);
   void rewind_peers(std::uint64_t tick);
@@ -229,6 +238,9 @@ class Room {
   bool locked_ = false;
   std::uint64_t digest_ = 0;
   std::uint64_t highest_tick_ = 0;  ///< Ever made, rewound or not.
+  /// The least tick that the match was ever taken back to, and the greatest that it was from.
+  std::uint64_t rewound_to_ = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t rewound_from_ = 0;
 
   Pacer pacer_;
   std::map<PeerId, Peer> peers_;
@@ -250,10 +262,5 @@ class Room {
   std::int64_t slowed_told_ns_ = 0;
   RoomStatistics statistics_;
 };
-
-/// "kTooSlow" and so on, for a line of the log.
-const char* refusal_name(protocol::Refusal code);
-/// Text from outside for a line of the log: nothing in it may look like another line.
-std::string printable(const std::string& text);
 
 }  // namespace cycloid::server

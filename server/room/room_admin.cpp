@@ -1,5 +1,6 @@
 #include <utility>
 
+#include "protocol/text.hpp"
 #include "server/room/room.hpp"
 
 namespace cycloid::server {
@@ -13,7 +14,8 @@ bool Room::kick(std::size_t seat, const std::string& reason) {
   seats_.free(seat);
   tokens_.forget(seat);
   if (lost) events_.push_back({protocol::EventKind::kKick, static_cast<std::uint16_t>(seat)});
-  notice(Notice::Kind::kAct, "seat " + std::to_string(seat) + " is freed: " + printable(reason));
+  notice(Notice::Kind::kAct,
+         "seat " + std::to_string(seat) + " is freed: " + protocol::printable(reason));
   return true;
 }
 
@@ -33,7 +35,7 @@ bool Room::reserve(std::size_t seat, const std::string& identity, std::uint64_t 
   if (state_ != RoomState::kRunning || ticks == 0) return false;
   if (!seats_.reserve(seat, identity, simulation_.tick() + ticks)) return false;
   notice(Notice::Kind::kAct, "seat " + std::to_string(seat) + " is reserved for \"" +
-                                 printable(identity) + "\" for " + std::to_string(ticks) +
+                                 protocol::printable(identity) + "\" for " + std::to_string(ticks) +
                                  " ticks");
   return true;
 }
@@ -41,16 +43,24 @@ bool Room::reserve(std::size_t seat, const std::string& identity, std::uint64_t 
 void Room::pause(const std::string& reason) {
   if (state_ != RoomState::kRunning || pacer_.paused()) return;
   pacer_.pause(hooks_.now_ns());
-  notice(Notice::Kind::kAct, "the match stands still: " + printable(reason));
+  notice(Notice::Kind::kAct, "the match stands still: " + protocol::printable(reason));
   tell_all(protocol::NoticeKind::kSlowed, statistics_.slowed_ns / 1'000'000,
            "the match stands still: " + reason);
 }
 
 void Room::resume() {
   if (!pacer_.paused()) return;
-  statistics_.slowed_ns += static_cast<std::uint64_t>(pacer_.resume(hooks_.now_ns()));
+  const std::int64_t now = hooks_.now_ns();
+  statistics_.slowed_ns += static_cast<std::uint64_t>(pacer_.resume(now));
+  for (auto& [id, peer] : peers_) peer.heard_ns = now;
   notice(Notice::Kind::kAct, "the match goes on");
   tell_all(protocol::NoticeKind::kSlowed, statistics_.slowed_ns / 1'000'000, "the match goes on");
+}
+
+void Room::set_limits(const Limits& limits) {
+  options_.limits = limits;
+  const std::int64_t now = hooks_.now_ns();
+  for (auto& [id, peer] : peers_) peer.set_limits(limits, now);
 }
 
 void Room::announce_drain(std::chrono::milliseconds within, const std::string& reason) {

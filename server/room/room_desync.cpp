@@ -1,7 +1,7 @@
 #include <algorithm>
-#include <cstdio>
 #include <utility>
 
+#include "protocol/text.hpp"
 #include "server/room/room.hpp"
 
 namespace cycloid::server {
@@ -10,12 +10,6 @@ namespace {
 /// What a client may send of a state that it was asked for, beside the state itself.
 constexpr std::uint64_t kStateBytesBeside = 65536;
 
-std::string hex(std::uint64_t value) {
-  char text[19];
-  (void)std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
-
 }  // namespace
 
 class Room::Evidence final : public RoomEvidence {
@@ -23,8 +17,9 @@ class Room::Evidence final : public RoomEvidence {
   explicit Evidence(const Room& room) : room_(room) {}
   std::uint64_t tick() const override { return room_.simulation_.tick(); }
   std::optional<std::uint64_t> digest_at(std::uint64_t tick) const override {
-    const MadeTick* made = room_.frames_.find(tick);
-    return made == nullptr ? std::nullopt : std::optional(made->digest);
+    if (const MadeTick* made = room_.frames_.find(tick)) return made->digest;
+    const auto state = room_.keyframes_.at_or_before(tick);  // Such as that of tick 0.
+    return state && state->tick() == tick ? std::optional(state->digest()) : std::nullopt;
   }
   const protocol::InputFrame* frame_at(std::uint64_t tick) const override {
     const MadeTick* made = room_.frames_.find(tick);
@@ -33,15 +28,19 @@ class Room::Evidence final : public RoomEvidence {
   std::shared_ptr<const ExactState> state_at_or_before(std::uint64_t tick) const override {
     return room_.keyframes_.at_or_before(tick);
   }
+  std::shared_ptr<const ExactState> state_from(std::uint64_t tick) const override {
+    return room_.keyframes_.from(tick);
+  }
 
  private:
   const Room& room_;
 };
 
 void Room::on_digest(PeerId id, Peer& peer, const protocol::Digest& digest) {
-  // A rewind may have taken back ticks that the client has seen.
-  const std::uint64_t highest = peer.delay_ticks == 0 ? highest_tick_ : visible_tick(peer);
+  // A rewind may have taken back ticks that the client has seen, and so may its seat's loss.
+  const std::uint64_t highest = highest_tick_ - std::min(highest_tick_, peer.delay_ticks);
   if (digest.tick > highest) {
+    if (peer.unseated && digest.tick <= highest_tick_) return;
     return refuse(id, peer, protocol::Refusal::kBadMessage,
                   "a digest of tick " + std::to_string(digest.tick) + ", the last made is " +
                       std::to_string(visible_tick(peer)));
@@ -51,7 +50,12 @@ void Room::on_digest(PeerId id, Peer& peer, const protocol::Digest& digest) {
   const MadeTick* made = frames_.find(digest.tick);
   if (made == nullptr) return;
   if (peer.seat >= 0) prove_secret(peer);
-  if (hooks_.inquiry != nullptr) hooks_.inquiry->on_digest(id, digest.tick, digest.digest);
+  if (was_taken_back(digest.tick)) return;
+  // Only what all replicas are asked for is a vote: others could crowd those out.
+  const bool votes = digest.tick % options_.limits.digest_ticks == 0;
+  if (votes && hooks_.inquiry != nullptr) {
+    hooks_.inquiry->on_digest(id, digest.tick, digest.digest);
+  }
   if (made->digest != digest.digest) on_mismatch(id, peer, digest, made->digest);
 }
 
@@ -59,8 +63,9 @@ void Room::on_mismatch(PeerId id, Peer& peer, const protocol::Digest& digest, st
   ++statistics_.desyncs;
   if (!std::exchange(peer.desync_noticed, true)) {
     notice(Notice::Kind::kDesync, "client " + std::to_string(id) + " desynced by tick " +
-                                      std::to_string(digest.tick) + ": digest " +
-                                      hex(digest.digest) + ", here " + hex(ours));
+                                      std::to_string(digest.tick) + ": digest 0x" +
+                                      protocol::hex16(digest.digest) + ", here 0x" +
+                                      protocol::hex16(ours));
   }
   const Limits& limits = options_.limits;
   if (!peer.desyncs.take(hooks_.now_ns())) {
@@ -95,9 +100,13 @@ void Room::on_inquiry(PeerId id, Peer& peer, InquiryAnswer said) {
   }
 }
 
+void Room::break_inquiries(const std::string& why) {
+  if (hooks_.inquiry != nullptr) hooks_.inquiry->on_break(why, Evidence(*this));
+}
+
 void Room::pass_inquiry_messages() {
   if (hooks_.inquiry == nullptr) return;
-  for (auto& [id, message] : hooks_.inquiry->take_messages()) {
+  for (auto& [id, message] : hooks_.inquiry->take_messages(Evidence(*this))) {
     const auto found = peers_.find(id);
     if (found == peers_.end() || !found->second.playing()) continue;
     InquiryAnswer said;

@@ -1,16 +1,10 @@
-#include <cstdio>
 #include <utility>
 
+#include "protocol/text.hpp"
 #include "server/room/room.hpp"
 
 namespace cycloid::server {
 namespace {
-
-std::string hex(std::uint64_t value) {
-  char text[19];
-  (void)std::snprintf(text, sizeof text, "0x%016llx", static_cast<unsigned long long>(value));
-  return text;
-}
 
 std::string differ(const std::string& what, const std::string& theirs, const std::string& ours) {
   return what + " " + theirs + ", here " + ours;
@@ -32,6 +26,7 @@ void Room::greet(PeerId id, Peer& peer, const Admission& admission) {
 
   peer.stage = PeerStage::kPlaying;
   peer.mode = hello.mode;
+  peer.packs = hello.protocol_minor >= protocol::kPackedFramesMinor;
   peer.profile = hello.profile;
   peer.framer.set_limit(protocol::kClientMessageBytesMax);
   peer.resumed = resumes;
@@ -58,7 +53,8 @@ bool Room::refuse_other_build(PeerId id, Peer& peer, const protocol::Hello& hell
                   std::to_string(solver::kSolverVersion)));
   } else if (hello.scene_digest != options_.scene_digest) {
     refuse(id, peer, protocol::Refusal::kSceneDigest,
-           differ("scene digest", hex(hello.scene_digest), hex(options_.scene_digest)));
+           differ("scene digest", "0x" + protocol::hex16(hello.scene_digest),
+                  "0x" + protocol::hex16(options_.scene_digest)));
   } else if (!hello.room.empty() && !options_.name.empty() && hello.room != options_.name) {
     refuse(id, peer, protocol::Refusal::kNoSuchRoom,
            differ("room", "\"" + hello.room + "\"", "\"" + options_.name + "\""));

@@ -1,21 +1,10 @@
 #include <algorithm>
 #include <utility>
 
+#include "protocol/overloaded.hpp"
 #include "server/room/room.hpp"
 
 namespace cycloid::server {
-namespace {
-
-template <class... Handlers>
-struct Overloaded : Handlers... {
-  using Handlers::operator()...;
-};
-// Implied by C++20, but Clang before 17 does not know.
-template <class... Handlers>
-Overloaded(Handlers...) -> Overloaded<Handlers...>;
-
-}  // namespace
-
 void Room::receive(PeerId id, std::span<const std::byte> bytes) {
   const auto found = peers_.find(id);
   if (found == peers_.end()) return;
@@ -36,8 +25,8 @@ void Room::process(PeerId id, Peer& peer) {
     if (!decoded.message) {
       return refuse(id, peer, protocol::Refusal::kBadMessage, "not a message: " + decoded.error);
     }
-    if (!within_rates(id, peer, payload->size(), *decoded.message)) return;
     peer.heard_ns = hooks_.now_ns();
+    if (!within_rates(id, peer, payload->size(), *decoded.message)) return;
     take(id, peer, *decoded.message);
   }
   if (peer.stage == PeerStage::kClosing || !peer.framer.broken()) return;
@@ -55,12 +44,12 @@ bool Room::within_rates(PeerId id, Peer& peer, std::size_t bytes,
     peer.free_bytes -= bytes;
     return true;
   }
-  const std::int64_t now = hooks_.now_ns();
+  const std::int64_t now = peer.heard_ns;
   const Limits& limits = options_.limits;
-  if (!peer.messages_rate.take(now, 1)) {
+  if (!peer.messages_rate.take(1, now)) {
     refuse(id, peer, protocol::Refusal::kRateLimited,
            "more than " + std::to_string(limits.messages_per_s) + " messages a second");
-  } else if (!peer.bytes_rate.take(now, bytes)) {
+  } else if (!peer.bytes_rate.take(static_cast<std::uint32_t>(bytes), now)) {
     refuse(id, peer, protocol::Refusal::kRateLimited,
            "more than " + std::to_string(limits.bytes_per_s) + " bytes a second");
   } else {
@@ -75,7 +64,7 @@ void Room::take(PeerId id, Peer& peer, const protocol::ClientMessage& message) {
     return refuse(id, peer, protocol::Refusal::kBadMessage,
                   is_hello ? "a second hello" : "the first message is not a hello");
   }
-  const auto handler = Overloaded{
+  const auto handler = protocol::Overloaded{
       [&](const protocol::Hello& hello) {
         Admission admission;
         admission.hello = hello;
@@ -144,6 +133,7 @@ void Room::on_ack(PeerId id, Peer& peer, const protocol::Ack& ack) {
                   "an acknowledgement of tick " + std::to_string(ack.tick) + ", the last made is " +
                       std::to_string(visible_tick(peer)));
   }
+  if (was_taken_back(ack.tick)) return;
   if (peer.mode == protocol::Mode::kSnapshot) {
     if (!peer.state_due && ack.tick >= peer.exact_tick) (void)peer.sent.acknowledge(ack.tick);
     return;
@@ -157,7 +147,7 @@ void Room::on_ack(PeerId id, Peer& peer, const protocol::Ack& ack) {
   peer.exact_tick = ack.tick;
   peer.next_frame = ack.tick + 1;
   say_welcome(id, peer, ack.tick);
-  if (peer.playing()) send_frames(id, peer);
+  if (peer.playing()) send_frames(id, peer, hooks_.now_ns());
 }
 
 void Room::prove_secret(Peer& peer) {

@@ -11,10 +11,11 @@ std::uint64_t Room::visible_tick(const Peer& peer) const {
 
 void Room::publish() {
   const std::uint64_t tick = simulation_.tick();
+  const std::int64_t now_ns = hooks_.now_ns();
   for (auto& [id, peer] : peers_) {
     if (!peer.playing()) continue;
     if (peer.mode == protocol::Mode::kLockstep) {
-      send_frames(id, peer);
+      send_frames(id, peer, now_ns);
     } else if (!peer.state_due && tick % options_.limits.snapshot_ticks == 0) {
       send_snapshot(peer);
     }
@@ -37,19 +38,19 @@ void Room::send_snapshot(Peer& peer) {
 
 /// Every frame that the client may see and that was not queued yet: one a tick, or all since the
 /// tick that it came back with, or since the state that it was given.
-void Room::send_frames(PeerId id, Peer& peer) {
-  const std::int64_t now = hooks_.now_ns();
+void Room::send_frames(PeerId id, Peer& peer, std::int64_t now_ns) {
   const std::int64_t most = options_.limits.queue_age.count();
   if (peer.state_due) {
-    if (now - peer.state_due_ns >= most) overrun(id, peer);
+    if (now_ns - peer.state_due_ns >= most) overrun(id, peer);
     return;
   }
   for (; peer.next_frame <= visible_tick(peer); ++peer.next_frame) {
     const MadeTick* made = frames_.find(peer.next_frame);
-    if (made == nullptr || !peer.outbox.push_frame(made->bytes, now)) return overrun(id, peer);
+    if (made == nullptr || !peer.outbox.push_frame(made->bytes(peer.packs), now_ns))
+      return overrun(id, peer);
   }
   const auto oldest = peer.outbox.oldest_frame_ns();
-  if (oldest && now - *oldest >= most) overrun(id, peer);
+  if (oldest && now_ns - *oldest >= most) overrun(id, peer);
 }
 
 void Room::send_margins() {
@@ -104,7 +105,7 @@ void Room::begin_state(PeerId id, Peer& peer) {
   peer.sent = {};
   peer.outbox.begin_state(state);
   statistics_.encodes = states_.encodes() + feed_.encodes();
-  if (peer.mode == protocol::Mode::kLockstep) return send_frames(id, peer);
+  if (peer.mode == protocol::Mode::kLockstep) return send_frames(id, peer, hooks_.now_ns());
   if (!delayed) feed_.hold(peer.profile, peer.sent, simulation_, digest_);
 }
 
@@ -128,13 +129,6 @@ void Room::tell_all(protocol::NoticeKind kind, std::uint64_t value, const std::s
     if (!peer.playing() || peer.welcome_due) continue;
     answer(id, peer, protocol::RoomNotice{kind, visible_tick(peer), value, text});
   }
-}
-
-bool Room::tell(PeerId id, protocol::RoomNotice said) {
-  const auto found = peers_.find(id);
-  if (found == peers_.end() || !found->second.playing() || found->second.welcome_due) return false;
-  answer(id, found->second, said);
-  return true;
 }
 
 }  // namespace cycloid::server

@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <vector>
 
 #include "server/room/room.hpp"
@@ -7,8 +8,13 @@ namespace cycloid::server {
 bool Room::rewind(std::uint64_t tick) {
   const std::uint64_t from = simulation_.tick();
   if (state_ != RoomState::kRunning || tick >= from) return false;
+  // Its own frame is needed too, for the log; tick 0 had none.
+  if (frames_.find(std::max<std::uint64_t>(tick, 1)) == nullptr) return false;
   if (!replay_to(tick)) return false;
+  break_inquiries("the match was taken back meanwhile");
   ++statistics_.rewinds;
+  rewound_to_ = std::min(rewound_to_, tick);
+  rewound_from_ = std::max(rewound_from_, from);
   reconcile_seats(tick);
   seats_.rewind(from, tick);
   frames_.drop_after(tick);

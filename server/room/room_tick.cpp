@@ -52,6 +52,7 @@ void Room::make_tick() {
   statistics_.lateness_ns.add(statistics_.last_lateness_ns);
   protocol::InputFrame frame = close_frame();
   std::vector<scenes::SeatInput> inputs;
+  inputs.reserve(frame.seats.size());
   for (const protocol::SeatFrame& seat : frame.seats) inputs.push_back(seat.input);
   const solver::Error error = simulation_.step(inputs);
   if (!error.ok()) return fault(frame, error);
@@ -74,6 +75,7 @@ void Room::make_tick() {
 protocol::InputFrame Room::close_frame() {
   protocol::InputFrame frame;
   frame.tick = simulation_.tick() + 1;
+  frame.seats.reserve(seats_.size());
   for (std::size_t seat = 0; seat < seats_.size(); ++seat) {
     frame.seats.push_back(close_seat(seats_[seat], frame.tick));
   }
@@ -113,18 +115,11 @@ void Room::keep(protocol::InputFrame frame) {
       hooks_.log->keyframe(tick, digest_, states_.of(simulation_, digest_)->bytes());
     }
   }
-  if (hooks_.inquiry != nullptr) hooks_.inquiry->on_tick(frame, digest_, simulation_);
-  protocol::Bytes bytes = protocol::encode(protocol::ServerMessage(frame));
-  if (tick % options_.limits.digest_ticks == 0) {
-    const auto digest = protocol::encode(protocol::ServerMessage(protocol::Digest{tick, digest_}));
-    bytes.insert(bytes.end(), digest.begin(), digest.end());
-  }
-  frames_.push(
-      {std::move(frame), digest_, std::make_shared<const protocol::Bytes>(std::move(bytes))});
+  frames_.push({std::move(frame), digest_, tick % options_.limits.digest_ticks == 0});
+  keyframes_.drop_before(frames_.oldest() - 1);  // Nothing leads on from those.
   if (tick % options_.limits.keyframe_ticks != 0) return;
   const std::uint64_t delay = options_.spectator_delay_ticks;
   keyframes_.push(states_.of(simulation_, digest_), tick > delay ? tick - delay : 0);
-  keyframes_.drop_before(frames_.oldest() - 1);  // Nothing leads on from those.
 }
 
 /// What there was no time for in the tick before.
@@ -200,8 +195,10 @@ void Room::slow_down() {
   const std::int64_t tick_ns = pacer_.tick_ns();
   const std::int64_t behind = now - pacer_.due_ns(simulation_.tick() + 1);
   if (behind <= tick_ns * static_cast<std::int64_t>(options_.limits.catch_up_ticks_max)) return;
-  pacer_.delay(behind);
-  statistics_.slowed_ns += static_cast<std::uint64_t>(behind);
+  // Whole ticks, so that rooms which were held up together do not share a phase from then on.
+  const std::int64_t by_ns = behind / tick_ns * tick_ns;
+  pacer_.delay(by_ns);
+  statistics_.slowed_ns += static_cast<std::uint64_t>(by_ns);
   // Once a second is enough, and says all of it: the value is a sum.
   constexpr std::int64_t kTellNs = 1'000'000'000;
   if (slowed_told_ns_ == 0 || now - slowed_told_ns_ >= kTellNs) {

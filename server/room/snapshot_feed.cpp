@@ -63,10 +63,6 @@ std::uint64_t SnapshotFeed::encodes() const {
   return exact_.states.encodes() + quantised_.states.encodes();
 }
 
-std::size_t SnapshotFeed::bytes() const {
-  return exact_.states.bytes() + quantised_.states.bytes();
-}
-
 Shared whole_state_delta(const ExactState& state) {
   protocol::StateDelta delta;
   delta.tick = state.tick();

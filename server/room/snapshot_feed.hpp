@@ -34,7 +34,6 @@ class SnapshotFeed {
   void forget_all();
 
   std::uint64_t encodes() const;  ///< Deltas made, whoever got them.
-  std::size_t bytes() const;      ///< Of the baselines that are kept.
 
  private:
   struct Made {

@@ -25,6 +25,13 @@ struct Bounds {
   }
 };
 
+template <int D>
+bool lies_in(const Bounds<D>& inner, const Bounds<D>& outer) {
+  for (int i = 0; i < D; ++i)
+    if (!(outer.lower[i] <= inner.lower[i] && inner.upper[i] <= outer.upper[i])) return false;
+  return true;
+}
+
 /// How far a shape reaches beyond its vertices and radius along the axes of the world, m.
 inline Vec<2> reach_of(const Shape<2>&, const Rotation<2>&) {
   return Vec<2>::zero();
@@ -43,16 +50,50 @@ inline Vec<3> reach_of(const Shape<3>& shape, const Rotation<3>& rotation) {
   return reach;
 }
 
-/// The box of a shape's vertices, its radius and `margin`; of a hull, that of its bounding box.
-/// @pre not a half-space.
+/// The smallest of four, in each lane.
+inline Lanes<4> least_of_four(Lanes<4> a) {
+  using Raw = Lanes<4>::Raw;
+  a = min(Lanes<4>(Raw{a.raw[2], a.raw[3], a.raw[0], a.raw[1]}), a);
+  return min(Lanes<4>(Raw{a.raw[1], a.raw[0], a.raw[3], a.raw[2]}), a);
+}
+
+/// What boxes mostly are in the plane: the four vertices side by side. The same numbers as one
+/// after the other.
+inline Bounds<2> bounds_of_four(const std::array<Vec<2>, 8>& vertices, const Pose<2>& pose) {
+  using Wide = Lanes<4>;
+  using Raw = Wide::Raw;
+  const Raw low = Wide::load(vertices[0].v).raw;
+  const Raw high = Wide::load(vertices[2].v).raw;
+  const Vec<2, Wide> r{
+      {Wide(Raw{low[0], low[2], high[0], high[2]}), Wide(Raw{low[1], low[3], high[1], high[3]})}};
+  const Vec<2, Wide> turn{{Wide(pose.rotation[0]), Wide(pose.rotation[1])}};
+  const Vec<2, Wide> at{{Wide(pose.position[0]), Wide(pose.position[1])}};
+  const Vec<2, Wide> placed = at + rotate(turn, r);
+  Bounds<2> bounds;
+  for (int i = 0; i < 2; ++i) {
+    bounds.lower[i] = least_of_four(placed[i]).raw[0];
+    bounds.upper[i] = -least_of_four(-placed[i]).raw[0];
+  }
+  return bounds;
+}
 template <int D>
-Bounds<D> bounds_of(const Shape<D>& shape, const Pose<D>& pose, float margin) {
+Bounds<D> bounds_of_vertices(const Shape<D>& shape, const Pose<D>& pose) {
+  if constexpr (Dim<D>::kSpin == 1)
+    if (shape.vertex_count == 4) return bounds_of_four(shape.vertices, pose);
   Vec<D> first = pose.position + rotate(pose.rotation, shape.vertices[0]);
   Bounds<D> bounds{first, first};
   for (std::uint32_t v = 1; v < shape.vertex_count; ++v) {
     const Vec<D> vertex = pose.position + rotate(pose.rotation, shape.vertices[v]);
     bounds = merged(bounds, {vertex, vertex});
   }
+  return bounds;
+}
+
+/// The box of a shape's vertices, its radius and `margin`; of a hull, that of its bounding box.
+/// @pre not a half-space.
+template <int D>
+Bounds<D> bounds_of(const Shape<D>& shape, const Pose<D>& pose, float margin) {
+  Bounds<D> bounds = bounds_of_vertices(shape, pose);
   const Vec<D> reach = reach_of(shape, pose.rotation);
   for (int i = 0; i < D; ++i) {
     bounds.lower[i] -= reach[i] + shape.radius + margin;

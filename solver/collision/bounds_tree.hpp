@@ -7,8 +7,8 @@
 
 namespace cycloid::solver {
 
-/// A balanced tree of boxes over a sorted sequence, rebuilt from nothing in each tick: O(n log n),
-/// without a history, so a restored world finds the same pairs as one that never stopped.
+/// A balanced tree of boxes over a sorted sequence, built from nothing: O(n log n), without
+/// a history.
 ///
 /// Leaves are sorted along a Morton curve, which keeps neighbours together. Source: Karras,
 /// "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees" (HPG 2012); we

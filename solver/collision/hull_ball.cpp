@@ -2,6 +2,15 @@
 
 namespace cycloid::solver {
 
+/// (x0, y0, x1, y1, ...) as (x0, x1, ...) and (y0, y1, ...).
+static Four by_coordinate(const Vec<2>* from) {
+  using Raw = Lanes<4>::Raw;
+  const Raw low = Lanes<4>::load(from[0].v).raw;
+  const Raw high = Lanes<4>::load(from[2].v).raw;
+  return {{Lanes<4>(Raw{low[0], low[2], high[0], high[2]}),
+           Lanes<4>(Raw{low[1], low[3], high[1], high[3]})}};
+}
+
 Hull make_hull(const Shape<2>& shape, const Rotation<2>& rotation, const Vec<2>& position) {
   Hull hull;
   hull.count = shape.vertex_count;
@@ -9,9 +18,20 @@ Hull make_hull(const Shape<2>& shape, const Rotation<2>& rotation, const Vec<2>&
   hull.ghosts = shape.ghosts;
   hull.one_sided = shape.kind == ShapeKind::kSegment;
   const std::uint32_t used = hull.one_sided ? 4 : hull.count;
-  for (std::uint32_t i = 0; i < used; ++i) {
-    hull.vertices[i] = position + rotate(rotation, shape.vertices[i]);
-    hull.normals[i] = rotate(rotation, shape.normals[i]);
+  const Four turn = in_each_lane(rotation);
+  for (std::uint32_t i = 0; i < used; i += 4) {
+    const Four vertices = in_each_lane(position) + rotate(turn, by_coordinate(&shape.vertices[i]));
+    vertices[0].store(&hull.vertex_x[i]);
+    vertices[1].store(&hull.vertex_y[i]);
+    const Four normals = rotate(turn, by_coordinate(&shape.normals[i]));
+    normals[0].store(&hull.normal_x[i]);
+    normals[1].store(&hull.normal_y[i]);
+  }
+  for (std::uint32_t i = used; i % 4 != 0; ++i) {
+    hull.vertex_x[i] = hull.vertex_x[0];
+    hull.vertex_y[i] = hull.vertex_y[0];
+    hull.normal_x[i] = hull.normal_x[0];
+    hull.normal_y[i] = hull.normal_y[0];
   }
   return hull;
 }
@@ -29,24 +49,24 @@ static Manifold<2> one_point(const Vec<2>& normal, const Vec<2>& surface, float 
 static bool neighbour_takes_end(const Hull& segment, bool at_start, const Vec<2>& centre) {
   const std::uint32_t bit = at_start ? 1u : 2u;
   if ((segment.ghosts & bit) == 0) return false;
-  const Vec<2> joint = segment.vertices[at_start ? 0 : 1];
-  const Vec<2> far = segment.vertices[at_start ? 2 : 3];
+  const Vec<2> joint = segment.vertex(at_start ? 0 : 1);
+  const Vec<2> far = segment.vertex(at_start ? 2 : 3);
   return dot(centre - joint, far - joint) > 0.0f;
 }
 
 /// Whether the segment that ends where this one starts sees the centre on its free side.
 static bool predecessor_sees(const Hull& segment, const Vec<2>& centre) {
   if ((segment.ghosts & 1u) == 0) return false;
-  const Vec<2> edge = segment.vertices[0] - segment.vertices[2];
+  const Vec<2> edge = segment.vertex(0) - segment.vertex(2);
   const Vec<2> normal = {{edge[1], -edge[0]}};
-  return dot(normal, centre - segment.vertices[0]) >= 0.0f;
+  return dot(normal, centre - segment.vertex(0)) >= 0.0f;
 }
 
 static Manifold<2> segment_against_ball(const Hull& segment, const Vec<2>& centre, float radius,
                                         const Vec<2>& a_to_b, float margin) {
-  const Vec<2> a = segment.vertices[0];
-  const Vec<2> b = segment.vertices[1];
-  const Vec<2> normal = segment.normals[0];
+  const Vec<2> a = segment.vertex(0);
+  const Vec<2> b = segment.vertex(1);
+  const Vec<2> normal = segment.normal(0);
   const float height = dot(normal, centre - a);
   const float reach = segment.radius + radius;
   if (height < 0.0f || height > reach + margin) return {};
@@ -74,19 +94,21 @@ Manifold<2> hull_against_ball(const Hull& hull, const Vec<2>& centre, float radi
   if (hull.one_sided) return segment_against_ball(hull, centre, radius, a_to_b, margin);
   const float reach = hull.radius + radius;
   std::uint32_t best = 0;
-  float highest = dot(hull.normals[0], centre - hull.vertices[0]);
-  for (std::uint32_t i = 1; i < hull.count; ++i) {
-    const float height = dot(hull.normals[i], centre - hull.vertices[i]);
-    if (height > highest) {
-      highest = height;
-      best = i;
+  float highest = -3.0e38f;
+  const Four at = in_each_lane(centre);
+  for (std::uint32_t first = 0; first < hull.count; first += 4) {
+    const Greatest most =
+        greatest_of(dot(four_normals(hull, first), at - four_vertices(hull, first)));
+    if (most.value > highest) {
+      highest = most.value;
+      best = first + most.lane;
     }
   }
   if (highest > reach + margin) return {};
   const std::uint32_t next = best + 1 < hull.count ? best + 1 : 0;
-  const Vec<2> a = hull.vertices[best];
-  const Vec<2> b = hull.vertices[next];
-  const Vec<2> normal = hull.normals[best];
+  const Vec<2> a = hull.vertex(best);
+  const Vec<2> b = hull.vertex(next);
+  const Vec<2> normal = hull.normal(best);
   const Vec<2> edge = b - a;
   const float along = dot(centre - a, edge);
   const bool before = along < 0.0f;

@@ -8,17 +8,36 @@ struct Axis {
   float separation = -3.0e38f;  ///< Of the cores, along the edge's normal, m.
 };
 
+/// Of four edges each: how far the lowest of four vertices lies outside.
+[[gnu::always_inline]] inline Lanes<4> lowest_of_four(const Four& normals, const Four& starts,
+                                                      const Four& vertices) {
+  const auto height = [&](Lanes<4> x, Lanes<4> y) { return dot(normals, Four{{x, y}} - starts); };
+  Lanes<4> lowest = height(each_is<0>(vertices[0]), each_is<0>(vertices[1]));
+  lowest = min(height(each_is<1>(vertices[0]), each_is<1>(vertices[1])), lowest);
+  lowest = min(height(each_is<2>(vertices[0]), each_is<2>(vertices[1])), lowest);
+  return min(height(each_is<3>(vertices[0]), each_is<3>(vertices[1])), lowest);
+}
+[[gnu::always_inline]] inline Lanes<4> lowest_of_two(const Four& normals, const Four& starts,
+                                                     const Four& vertices) {
+  const auto height = [&](Lanes<4> x, Lanes<4> y) { return dot(normals, Four{{x, y}} - starts); };
+  return min(height(each_is<1>(vertices[0]), each_is<1>(vertices[1])),
+             height(each_is<0>(vertices[0]), each_is<0>(vertices[1])));
+}
+
 /// The edge of `a` that `b` is farthest outside of. For a segment only its free side counts.
-static Axis deepest_axis(const Hull& a, const Hull& b) {
+static inline Axis deepest_axis(const Hull& a, const Hull& b) {
   Axis best;
   const std::uint32_t edges = a.one_sided ? 1 : a.count;
-  for (std::uint32_t i = 0; i < edges; ++i) {
-    float lowest = dot(a.normals[i], b.vertices[0] - a.vertices[i]);
-    for (std::uint32_t j = 1; j < b.count; ++j) {
-      const float height = dot(a.normals[i], b.vertices[j] - a.vertices[i]);
-      if (height < lowest) lowest = height;
-    }
-    if (lowest > best.separation) best = {i, lowest};
+  for (std::uint32_t first = 0; first < edges; first += 4) {
+    const Four normals = four_normals(a, first);
+    const Four starts = four_vertices(a, first);
+    const Four vertices = four_vertices(b, 0);
+    Lanes<4> lowest = b.count == 2 ? lowest_of_two(normals, starts, vertices)
+                                   : lowest_of_four(normals, starts, vertices);
+    if (b.count > 4) lowest = min(lowest_of_four(normals, starts, four_vertices(b, 4)), lowest);
+    if (a.one_sided) return {0, lowest.raw[0]};
+    const Greatest most = greatest_of(lowest);
+    if (most.value > best.separation) best = {first + most.lane, most.value};
   }
   return best;
 }
@@ -26,12 +45,14 @@ static Axis deepest_axis(const Hull& a, const Hull& b) {
 /// The edge of `hull` whose normal is most opposed to `normal`.
 static std::uint32_t incident_edge(const Hull& hull, const Vec<2>& normal) {
   std::uint32_t best = 0;
-  float lowest = dot(hull.normals[0], normal);
-  for (std::uint32_t i = 1; i < hull.count; ++i) {
-    const float along = dot(hull.normals[i], normal);
-    if (along < lowest) {
-      lowest = along;
-      best = i;
+  float lowest = 3.0e38f;
+  for (std::uint32_t first = 0; first < hull.count; first += 4) {
+    const Lanes<4> along = dot(four_normals(hull, first), in_each_lane(normal));
+    if (hull.one_sided) return along.raw[1] < along.raw[0] ? 1 : 0;
+    const Greatest least = greatest_of(-along);
+    if (-least.value < lowest) {
+      lowest = -least.value;
+      best = first + least.lane;
     }
   }
   return best;
@@ -84,10 +105,10 @@ static std::uint32_t feature_id(const Reference& reference, std::uint32_t vertex
 static bool vertex_against_vertex(const Reference& reference, const Edge& incident,
                                   const Vec<2>& a_to_b, float margin, Manifold<2>& manifold) {
   const Edge edge = edge_of(reference.hull, reference.edge);
-  const Vec<2> p = reference.hull.vertices[edge.from];
-  const Vec<2> q = reference.other.vertices[incident.from];
-  const Vec<2> d1 = reference.hull.vertices[edge.to] - p;
-  const Vec<2> d2 = reference.other.vertices[incident.to] - q;
+  const Vec<2> p = reference.hull.vertex(edge.from);
+  const Vec<2> q = reference.other.vertex(incident.from);
+  const Vec<2> d1 = reference.hull.vertex(edge.to) - p;
+  const Vec<2> d2 = reference.other.vertex(incident.to) - q;
   float s = 0.0f;
   float t = 0.0f;
   closest_fractions(p, d1, q, d2, s, t);
@@ -114,14 +135,13 @@ static bool vertex_against_vertex(const Reference& reference, const Edge& incide
 static void clip_edges(const Reference& reference, const Edge& incident, const Vec<2>& a_to_b,
                        float margin, Manifold<2>& manifold) {
   const Edge edge = edge_of(reference.hull, reference.edge);
-  const Vec<2> normal = reference.hull.normals[reference.edge];
-  const Vec<2> from = reference.hull.vertices[edge.from];
-  const Vec<2> span = reference.hull.vertices[edge.to] - from;
+  const Vec<2> normal = reference.hull.normal(reference.edge);
+  const Vec<2> from = reference.hull.vertex(edge.from);
+  const Vec<2> span = reference.hull.vertex(edge.to) - from;
   const float width = length(span);
   const Vec<2> tangent = (1.0f / width) * span;
   // The incident edge runs against the reference edge; take its far end first.
-  const Vec<2> q[2] = {reference.other.vertices[incident.to],
-                       reference.other.vertices[incident.from]};
+  const Vec<2> q[2] = {reference.other.vertex(incident.to), reference.other.vertex(incident.from)};
   const std::uint32_t vertex[2] = {incident.to, incident.from};
   const float x[2] = {dot(q[0] - from, tangent), dot(q[1] - from, tangent)};
   if (x[1] < 0.0f || x[0] > width) return;
@@ -147,12 +167,12 @@ static void clip_edges(const Reference& reference, const Edge& incident, const V
 /// Whether a normal that another hull's edge proposes against a chain segment is one that the
 /// chain's own corner allows: between the segment's normal and its neighbour's.
 static bool chain_allows(const Hull& segment, const Vec<2>& normal) {
-  const Vec<2> own = segment.normals[0];
+  const Vec<2> own = segment.normal(0);
   if (dot(normal, own) <= 0.0f) return false;
   const bool towards_end = cross(own, normal) > 0.0f;
   if ((segment.ghosts & (towards_end ? 2u : 1u)) == 0) return true;
-  const Vec<2> edge = towards_end ? segment.vertices[3] - segment.vertices[1]
-                                  : segment.vertices[0] - segment.vertices[2];
+  const Vec<2> edge =
+      towards_end ? segment.vertex(3) - segment.vertex(1) : segment.vertex(0) - segment.vertex(2);
   const Vec<2> neighbour = {{edge[1], -edge[0]}};
   // On a convex corner the normal may turn as far as the neighbour's, on a concave one not at all.
   const float corner = towards_end ? cross(own, neighbour) : cross(neighbour, own);
@@ -169,13 +189,13 @@ Manifold<2> hull_against_hull(const Hull& a, const Hull& b, const Vec<2>& a_to_b
   // A tie goes to shape a, so that resting boxes do not swap their reference from tick to tick.
   constexpr float kPreference = 1.0e-4f;
   bool flipped = axis_b.separation > axis_a.separation + kPreference;
-  if (a.one_sided && flipped) flipped = chain_allows(a, -b.normals[axis_b.edge]);
-  if (b.one_sided && !flipped) flipped = !chain_allows(b, -a.normals[axis_a.edge]);
+  if (a.one_sided && flipped) flipped = chain_allows(a, -b.normal(axis_b.edge));
+  if (b.one_sided && !flipped) flipped = !chain_allows(b, -a.normal(axis_a.edge));
 
   const Reference reference =
       flipped ? Reference{b, a, axis_b.edge, true} : Reference{a, b, axis_a.edge, false};
   const Axis& axis = flipped ? axis_b : axis_a;
-  const Vec<2> normal = reference.hull.normals[reference.edge];
+  const Vec<2> normal = reference.hull.normal(reference.edge);
   const Edge incident = edge_of(reference.other, incident_edge(reference.other, normal));
   Manifold<2> manifold;
   const bool chain = a.one_sided || b.one_sided;
@@ -194,7 +214,7 @@ Manifold<2> half_space_against_hull(const Vec<2>& normal, float offset, const Hu
   std::uint32_t second = 0;
   float height[8];
   for (std::uint32_t i = 0; i < hull.count; ++i) {
-    height[i] = dot(normal, hull.vertices[i]) - offset;
+    height[i] = dot(normal, hull.vertex(i)) - offset;
     if (height[i] < height[first]) first = i;
   }
   second = first == 0 ? 1 : 0;
@@ -209,7 +229,7 @@ Manifold<2> half_space_against_hull(const Vec<2>& normal, float offset, const Hu
   for (const std::uint32_t i : {low, high}) {
     const float separation = height[i] - hull.radius;
     if (separation > margin) continue;
-    const Vec<2> at = hull.vertices[i] - (hull.radius + 0.5f * separation) * normal;
+    const Vec<2> at = hull.vertex(i) - (hull.radius + 0.5f * separation) * normal;
     add_point(at, separation, i, a_to_b, manifold);
   }
   return manifold;

@@ -16,7 +16,8 @@ struct BlockFactor {
   /// @param k  shape [count, count]; the lower triangle is read.
   void factor(const T (&k)[N][N], int count) {
     T pivot[N];
-    for (int i = 0; i < count; ++i) {
+    const int rows = count < N ? count : N;  // So that a compiler sees the bound too.
+    for (int i = 0; i < rows; ++i) {
       for (int j = 0; j < i; ++j) {
         T sum = k[i][j];
         for (int m = 0; m < j; ++m) sum = sum - lower[i][m] * lower[j][m] * pivot[m];

@@ -1,11 +1,16 @@
 #pragma once
 
-#include <span>
-
 #include "solver/constraints/motion_lanes.hpp"
 #include "solver/step_context.hpp"
 
 namespace cycloid::solver {
+
+/// Where a contact point is during the tick, from either centre.
+template <int D, class L>
+struct Arms {
+  Vec<D, L> r_a;
+  Vec<D, L> r_b;
+};
 
 /// W contacts whose bodies are all different, one in each lane; unused lanes have no mass.
 ///
@@ -22,8 +27,10 @@ struct ContactBlock {
   struct Point {
     Vec<D, L> r_a;
     Vec<D, L> r_b;
-    L separation;   ///< At the start of the tick, m.
-    L normal_mass;  ///< 0 in lanes that have no such point.
+    L separation;     ///< At the start of the tick, m.
+    L normal_mass;    ///< 0 in lanes that have no such point.
+    Arms<D, L> arms;  ///< At the poses of ContactBlock::placed.
+    L gap;            ///< Separation at those poses, m.
     L tangent_mass[kTangents];
     L normal_impulse;
     L position_impulse;  ///< Of XPBD's position pass in this substep, kg m.
@@ -35,6 +42,16 @@ struct ContactBlock {
   LaneIndices<W> body_a;
   LaneIndices<W> body_b;
   LaneIndices<W> contact;
+  LaneBits moves_a;  ///< Lanes whose body a has mass.
+  LaneBits moves_b;
+  std::uint32_t placed;       ///< Which poses the arms are of (StepScratch::poses); 0: of none.
+  std::uint32_t point_count;  ///< The most points of any lane.
+  bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
+  bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
+  bool rolls;                 ///< Some lane resists rolling or twist.
+  bool bounces;               ///< Some lane restitutes.
+  bool bounced;               ///< Some did in the last sweep of bounces.
+  bool follows;               ///< Some lane is round.
   LaneMass<D, W> mass_a;
   LaneMass<D, W> mass_b;
   Vec<D, L> normal;
@@ -55,21 +72,7 @@ struct ContactBlock {
   Vec<D, L> centre_offset;  ///< Of b from a at the start of the tick, m.
   L radius_a;
   L radius_b;
-  std::uint32_t point_count;  ///< The most points of any lane.
-  bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
-  bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
-  bool rolls;                 ///< Some lane resists rolling or twist.
-  bool bounces;               ///< Some lane restitutes.
-  bool bounced;               ///< Some did in the last sweep of bounces.
-  bool follows;               ///< Some lane is round.
   Point points[Dim<D>::kManifoldPoints];
-};
-
-/// Where a contact point is during the tick, from either centre.
-template <int D, class L>
-struct Arms {
-  Vec<D, L> r_a;
-  Vec<D, L> r_b;
 };
 
 /// The point moves with the two centres, weighted so that it follows the lighter body. Both
@@ -108,40 +111,9 @@ template <int D, int W>
   apply_impulse(impulse, arms.r_b, block.mass_b, b);
 }
 
-/// Two balls roll over one another: the normal, the point and the separation follow their centres.
-/// With the normal of the tick's start a glancing blow would act beside both centres and set them
-/// spinning. Other shapes keep their normal during a tick.
-template <int D, int W>
-void follow_round(ContactBlock<D, W>& block, std::span<const Motion<D>> motions) {
-  using L = Lanes<W>;
-  const MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
-  const MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
-  const Vec<D, L> slide = b.delta_position - a.delta_position;
-  const Vec<D, L> between = block.centre_offset + slide;
-  const L distance = sqrt(dot(between, between));
-  const L far = select(distance > L(1.0e-6f), block.is_round, L(0.0f));
-  const auto follows = far > L(0.0f);
-  const L inverse = L(1.0f) / select(follows, distance, L(1.0f));
-  for (int i = 0; i < D; ++i)
-    block.normal[i] = select(follows, inverse * between[i], block.normal[i]);
-  tangents(block.normal, block.tangent);
-  auto& point = block.points[0];
-  const L separation = distance - (block.radius_a + block.radius_b);
-  const L half = L(0.5f) * separation;
-  const Vec<D, L> r_a = (block.radius_a + half) * block.normal - block.share_b * slide;
-  const Vec<D, L> r_b = -((block.radius_b + half) * block.normal) - (block.share_b * slide - slide);
-  for (int i = 0; i < D; ++i) {
-    point.r_a[i] = select(follows, r_a[i], point.r_a[i]);
-    point.r_b[i] = select(follows, r_b[i], point.r_b[i]);
-  }
-  // separation_of adds what the bodies have moved along the normal since the tick began.
-  point.separation = select(follows, separation - dot(slide, block.normal), point.separation);
-}
-
 /// How one sweep treats the normal row of a point.
 template <int W>
 struct NormalRow {
-  Lanes<W> separation;
   Lanes<W> bias;  ///< m/s
   Lanes<W> mass_scale;
   Lanes<W> impulse_scale;
@@ -159,6 +131,18 @@ template <int D, int W>
   return point.separation + dot(moved, block.normal);
 }
 
+/// Arms and gaps where the bodies are now: they hold until positions move again.
+template <int D, int W>
+[[gnu::always_inline]] inline void place(ContactBlock<D, W>& block, const MotionLanes<D, W>& a,
+                                         const MotionLanes<D, W>& b) {
+  for (std::uint32_t i = 0; i < block.point_count; ++i) {
+    auto& point = block.points[i];
+    const Lanes<W> gap = separation_of(block, point, a, b);
+    point.arms = arms_of(block, point, a, b);
+    point.gap = gap;
+  }
+}
+
 /// A gap s > 0 may be closed but not crossed in this substep: bias = s / h. Overlap beyond the slop
 /// is pushed out by the block's softness, at most at `push_speed_max`. Pseudo-velocities answer to
 /// overlap alone: what is apart may not come closer by them. A relax sweep looks one substep ahead;
@@ -166,24 +150,23 @@ template <int D, int W>
 template <int D, int W>
 [[gnu::always_inline]] inline NormalRow<W> normal_row(
     const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
-    const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
-    const MotionLanes<D, W>& b, const Lanes<W>& speed) {
+    const typename ContactBlock<D, W>::Point& point, const Lanes<W>& speed) {
   using L = Lanes<W>;
   NormalRow<W> row;
-  row.separation = separation_of(block, point, a, b);
-  const auto apart = row.separation > L(0.0f);
-  const L gap = sweep == Sweep::kPseudo ? L(0.0f) : L(context.inverse_h);
-  row.bias = select(apart, row.separation * gap, L(0.0f));
+  const auto apart = point.gap > L(0.0f);
+  const L closes = sweep == Sweep::kPseudo ? L(0.0f) : L(context.inverse_h);
+  row.bias = select(apart, point.gap * closes, L(0.0f));
   row.mass_scale = L(1.0f);
   row.impulse_scale = L(0.0f);
   if (sweep == Sweep::kRelax) {
+    if (!block.bounces) return row;
     const L about_to = select(block.restitution > L(0.0f), L(1.0f), L(0.0f));
     const L fast = select(speed < L(-context.tuning.restitution_threshold), about_to, L(0.0f));
     row.bias = select(apart, select(fast > L(0.0f), -speed, row.bias), row.bias);
     return row;
   }
   const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : block.bias_rate;
-  const L overlap = min(row.separation + L(context.tuning.slop), L(0.0f));
+  const L overlap = min(point.gap + L(context.tuning.slop), L(0.0f));
   row.bias = select(apart, row.bias, max(rate * overlap, L(-context.tuning.push_speed_max)));
   if (sweep == Sweep::kPseudo) return row;
   row.mass_scale = select(apart, row.mass_scale, block.mass_scale);
@@ -200,19 +183,16 @@ template <int D, int W>
 }
 
 template <int D, int W>
-void warm_start(const ContactBlock<D, W>& block, std::span<Motion<D>> motions) {
-  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
-  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
+[[gnu::always_inline]] inline void warm_start_points(const ContactBlock<D, W>& block,
+                                                     MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     const auto& point = block.points[i];
     Vec<D, Lanes<W>> impulse = point.normal_impulse * block.normal;
     for (int t = 0; t < Dim<D>::kTangents; ++t)
       impulse += point.tangent_impulse[t] * block.tangent[t];
-    apply_pair(impulse, arms_of(block, point, a, b), block, a, b);
+    apply_pair(impulse, point.arms, block, a, b);
   }
   if (block.rolls) turn_pair(block.rolling_impulse, block, a, b);
-  scatter(a, block.mass_a, block.body_a, motions);
-  scatter(b, block.mass_b, block.body_b, motions);
 }
 
 /// Holds an impulse of N components to a length of at most `bound`; in the plane an interval.
@@ -251,10 +231,10 @@ template <int D, int W>
 [[gnu::always_inline]] inline void solve_friction(const StepContext<D>& context,
                                                   ContactBlock<D, W>& block,
                                                   typename ContactBlock<D, W>::Point& point,
+                                                  const Arms<D, Lanes<W>>& arms,
                                                   MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   constexpr int kTangents = Dim<D>::kTangents;
-  const Arms<D, L> arms = arms_of(block, point, a, b);
   const L bound = block.friction * (point.normal_impulse + point.bounce_impulse);
   L speed[kTangents];
   L wanted[kTangents];
@@ -286,20 +266,29 @@ template <int D, int W>
   apply_pair(applied * block.normal, arms, block, a, b);
 }
 
+/// How much a sweep wants to change the normal impulse. Only a soft row has a mass scale other than
+/// 1 and an impulse scale other than 0.
+template <int D, int W>
+[[gnu::always_inline]] inline Lanes<W> normal_change(
+    const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
+    const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
+    const MotionLanes<D, W>& b) {
+  const Lanes<W> speed = relative_speed(block.normal, point.arms, a, b);
+  const NormalRow<W> row = normal_row(context, sweep, block, point, speed);
+  if (sweep != Sweep::kBiased) return -point.normal_mass * (speed + row.bias);
+  return -point.normal_mass * row.mass_scale * (speed + row.bias) -
+         row.impulse_scale * point.normal_impulse;
+}
+
 /// The normal row: 0 <= normal impulse.
 template <int D, int W>
 [[gnu::always_inline]] inline void solve_normal(const StepContext<D>& context, Sweep sweep,
                                                 ContactBlock<D, W>& block,
                                                 typename ContactBlock<D, W>::Point& point,
                                                 MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
-  using L = Lanes<W>;
-  const Arms<D, L> arms = arms_of(block, point, a, b);
-  const L speed = relative_speed(block.normal, arms, a, b);
-  const NormalRow<W> row = normal_row(context, sweep, block, point, a, b, speed);
-  const L change = -point.normal_mass * row.mass_scale * (speed + row.bias) -
-                   row.impulse_scale * point.normal_impulse;
-  set_normal_impulse(point.normal_impulse + L(context.tuning.over_relaxation) * change, arms, block,
-                     point, a, b);
+  const Lanes<W> change = normal_change(context, sweep, block, point, a, b);
+  set_normal_impulse(point.normal_impulse + Lanes<W>(context.tuning.over_relaxation) * change,
+                     point.arms, block, point, a, b);
 }
 
 }  // namespace cycloid::solver

@@ -6,12 +6,6 @@
 
 namespace cycloid::solver {
 
-/// Which of four rows push, a bit per row: by falling size, then by rising first row. Cut to fewer
-/// rows the order is that of fewer rows, so rows that do not exist change no bit.
-inline constexpr std::uint32_t kPushing[15] = {0b1111, 0b0111, 0b1011, 0b1101, 0b1110,
-                                               0b0011, 0b0101, 0b1001, 0b0110, 0b1010,
-                                               0b1100, 0b0001, 0b0010, 0b0100, 0b1000};
-
 /// The normal rows of a manifold as one problem: w = K x + d >= 0, x >= 0, x . w = 0. A row that
 /// does not exist has K = 1 on the diagonal, 0 beside it, and d = 0.
 template <int N, class L>
@@ -78,6 +72,11 @@ void solve_normals(const NormalProblem<N, Lanes<W>>& p, int count, Lanes<W> (&x)
                    Lanes<W>& usable) {
   using L = Lanes<W>;
   constexpr float kResidualMax = 1.0e-5f;
+  // Which of four rows push, a bit per row: by falling size, then by rising first row. Cut to fewer
+  // rows the order is that of fewer rows, so rows that do not exist change no bit.
+  static constexpr std::uint32_t kPushing[15] = {0b1111, 0b0111, 0b1011, 0b1101, 0b1110,
+                                                 0b0011, 0b0101, 0b1001, 0b0110, 0b1010,
+                                                 0b1100, 0b0001, 0b0010, 0b0100, 0b1000};
   const L zero(0.0f);
   const L one(1.0f);
   L most = zero;

@@ -89,8 +89,7 @@ Lanes<W> correct_manifold(const StepContext<D>& context, const ContactBlock<D, W
 /// and K at the present poses. What does not overlap is not touched, to the bit. Source: Catto,
 /// "Understanding Constraints" (GDC 2014); for the points at once solve_pair and solve_normals.
 template <int D, int W>
-void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
-                     std::span<Motion<D>> motions) {
+void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block, Motion<D>* motions) {
   using L = Lanes<W>;
   MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
   MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
@@ -110,8 +109,8 @@ void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
     const L lambda = has_mass * (-error / select(k > L(0.0f), k, L(1.0f)));
     move_pair(lambda * block.normal, arms, block, a, b);
   }
-  scatter_pose(a, block.mass_a, block.body_a, motions);
-  scatter_pose(b, block.mass_b, block.body_b, motions);
+  scatter_pose(a, block.moves_a, block.body_a, motions);
+  scatter_pose(b, block.moves_b, block.body_b, motions);
 }
 
 /// XPBD's position pass: overlap is projected out, at most push_speed_max h of it, then the points'
@@ -120,7 +119,7 @@ void correct_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
 /// Extended Position Based Dynamics" (SCA 2020), sections 3.3 to 3.5.
 template <int D, int W>
 void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
-                     std::span<const Motion<D>> before, std::span<Motion<D>> motions) {
+                     const Motion<D>* before, Motion<D>* motions) {
   using L = Lanes<W>;
   MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
   MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
@@ -155,8 +154,8 @@ void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
     const L sticks = select(square > bound * bound, L(0.0f), L(1.0f));
     move_pair(sticks * lambda, now, block, a, b);
   }
-  scatter_pose(a, block.mass_a, block.body_a, motions);
-  scatter_pose(b, block.mass_b, block.body_b, motions);
+  scatter_pose(a, block.moves_a, block.body_a, motions);
+  scatter_pose(b, block.moves_b, block.body_b, motions);
 }
 
 /// XPBD's velocity pass, for points that pushed: what the projection left of normal velocity is
@@ -164,7 +163,7 @@ void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
 /// whose impulse is at most friction lambda / h. Source: Mueller et al. 2020, section 3.6.
 template <int D, int W>
 void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
-                           std::span<Motion<D>> motions) {
+                           Motion<D>* motions) {
   using L = Lanes<W>;
   MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
   MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
@@ -176,13 +175,13 @@ void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& bl
     const L stop = select(point.position_impulse > L(0.0f), -point.normal_mass * speed, L(0.0f));
     apply_pair(stop * block.normal, arms, block, a, b);
     for (L& impulse : point.tangent_impulse) impulse = L(0.0f);
-    if (block.rubs) solve_friction(context, block, point, a, b);
+    if (block.rubs) solve_friction(context, block, point, arms, a, b);
     point.position_impulse = L(0.0f);
   }
   for (L& impulse : block.rolling_impulse.v) impulse = L(0.0f);
   if (block.rolls) solve_rolling(block, a, b);
-  scatter(a, block.mass_a, block.body_a, motions);
-  scatter(b, block.mass_b, block.body_b, motions);
+  scatter(a, block.moves_a, block.body_a, motions);
+  scatter(b, block.moves_b, block.body_b, motions);
 }
 
 }  // namespace cycloid::solver

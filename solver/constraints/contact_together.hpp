@@ -75,12 +75,8 @@ void solve_normals_where(const Lanes<W>& wanted, const StepContext<D>& context, 
   using L = Lanes<W>;
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
-    const Arms<D, L> arms = arms_of(block, point, a, b);
-    const L speed = relative_speed(block.normal, arms, a, b);
-    const NormalRow<W> row = normal_row(context, sweep, block, point, a, b, speed);
-    const L change = -point.normal_mass * row.mass_scale * (speed + row.bias) -
-                     row.impulse_scale * point.normal_impulse;
-    set_normal_impulse(point.normal_impulse + wanted * change, arms, block, point, a, b);
+    const L change = normal_change(context, sweep, block, point, a, b);
+    set_normal_impulse(point.normal_impulse + wanted * change, point.arms, block, point, a, b);
   }
 }
 
@@ -119,10 +115,10 @@ Lanes<W> solve_manifold(const StepContext<D>& context, Sweep sweep, ContactBlock
   NormalProblem<kPoints, L> problem;
   for (int i = 0; i < count; ++i) {
     const auto& point = block.points[i];
-    arms[i] = arms_of(block, point, a, b);
+    arms[i] = point.arms;
     old[i] = point.normal_impulse;
     const L speed = relative_speed(block.normal, arms[i], a, b);
-    const NormalRow<W> row = normal_row(context, sweep, block, point, a, b, speed);
+    const NormalRow<W> row = normal_row(context, sweep, block, point, speed);
     const auto scaled = row.mass_scale > L(0.0f);  // Not in unused lanes.
     compliance[i] = L(1.0f) / select(scaled, row.mass_scale, L(1.0f)) - L(1.0f);
     problem.d[i] = speed + row.bias;
@@ -159,9 +155,9 @@ Lanes<W> solve_two_normals(const StepContext<D>& context, Sweep sweep, ContactBl
     L compliance[2];
     L diagonal[2];
     for (int i = 0; i < 2; ++i) {
-      arms[i] = arms_of(block, *points[i], a, b);
+      arms[i] = points[i]->arms;
       const L speed = relative_speed(block.normal, arms[i], a, b);
-      const NormalRow<W> row = normal_row(context, sweep, block, *points[i], a, b, speed);
+      const NormalRow<W> row = normal_row(context, sweep, block, *points[i], speed);
       diagonal[i] = coupling(block, block.normal, arms[i], block.normal, arms[i]);
       compliance[i] = diagonal[i] * (L(1.0f) / row.mass_scale - L(1.0f));
       d[i] = speed + row.bias;
@@ -211,9 +207,9 @@ void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlo
   constexpr int kRows = 1 + kTangents;
   for (std::uint32_t p = 0; p < block.point_count; ++p) {
     auto& point = block.points[p];
-    const Arms<D, L> arms = arms_of(block, point, a, b);
+    const Arms<D, L> arms = point.arms;
     const NormalRow<W> row =
-        normal_row(context, sweep, block, point, a, b, relative_speed(block.normal, arms, a, b));
+        normal_row(context, sweep, block, point, relative_speed(block.normal, arms, a, b));
     Vec<D, L> directions[kRows];
     L old[kRows];
     directions[0] = block.normal;
@@ -249,10 +245,8 @@ void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlo
 /// The other way round a relax sweep would hold it to the softened impulse of the biased sweep,
 /// which is 3 % too small: a box on a slope then accelerates too fast.
 template <int D, int W>
-void solve(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
-           std::span<Motion<D>> motions) {
-  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
-  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
+void solve_block(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
+                 MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   const ContactBlockRows together = context.tuning.contact_block;
   if (together == ContactBlockRows::kNormals)
     solve_normals_together(context, sweep, block, a, b);
@@ -261,15 +255,11 @@ void solve(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block
   else
     for (std::uint32_t i = 0; i < block.point_count; ++i)
       solve_normal(context, sweep, block, block.points[i], a, b);
-  const bool coupled = together == ContactBlockRows::kNormalFriction;
-  if (sweep != Sweep::kPseudo) {
-    if (block.rolls) solve_rolling(block, a, b);
-    if (block.rubs && !coupled)
-      for (std::uint32_t i = 0; i < block.point_count; ++i)
-        solve_friction(context, block, block.points[i], a, b);
-  }
-  scatter(a, block.mass_a, block.body_a, motions);
-  scatter(b, block.mass_b, block.body_b, motions);
+  if (sweep == Sweep::kPseudo) return;
+  if (block.rolls) solve_rolling(block, a, b);
+  if (block.rubs && together != ContactBlockRows::kNormalFriction)
+    for (std::uint32_t i = 0; i < block.point_count; ++i)
+      solve_friction(context, block, block.points[i], block.points[i].arms, a, b);
 }
 
 }  // namespace cycloid::solver

@@ -1,15 +1,9 @@
 #pragma once
 
-#include <array>
-#include <cstring>
-#include <span>
-
+#include "solver/constraints/transpose.hpp"
 #include "solver/motion.hpp"
 
 namespace cycloid::solver {
-
-template <int W>
-using LaneIndices = std::array<std::uint32_t, static_cast<std::size_t>(W)>;
 
 /// The motions of W bodies, transposed: one body in each lane.
 template <int D, int W>
@@ -26,67 +20,63 @@ struct LaneMass {
   Lanes<W> inverse_inertia[Dim<D>::kSpin * Dim<D>::kSpin];
 };
 
-/// W floats of each of a motion's components, in the order of the record.
+/// Component i of a motion, in the order of the record.
 template <int D, int W>
-struct MotionColumns {
-  static constexpr int kUsed = 2 * D + Dim<D>::kSpin + Dim<D>::kRotation;
-  float column[kUsed][W];
-};
+[[gnu::always_inline]] inline Lanes<W>& component(MotionLanes<D, W>& lanes, int i) {
+  constexpr int kSpin = Dim<D>::kSpin;
+  if (i < D) return lanes.velocity.v[i];
+  if (i < D + kSpin) return lanes.spin.v[i - D];
+  if (i < 2 * D + kSpin) return lanes.delta_position.v[i - D - kSpin];
+  return lanes.delta_rotation.v[i - 2 * D - kSpin];
+}
+
+/// Quads [0, kQuads) of the records of W bodies; what lies in later ones is left as it is.
+template <int kQuads, int D, int W>
+[[gnu::always_inline]] inline void gather_quads(const Motion<D>* motions,
+                                                const LaneIndices<W>& bodies,
+                                                MotionLanes<D, W>& lanes) {
+  for (int quad = 0; quad < kQuads; ++quad) {
+    Lanes<W> columns[4];
+    gather_columns<W>(motions, bodies, quad, columns);
+    for (int i = 0; i < 4; ++i)
+      if (4 * quad + i < kMotionComponents<D>) component(lanes, 4 * quad + i) = columns[i];
+  }
+}
 
 template <int D, int W>
-[[gnu::always_inline]] inline MotionLanes<D, W> gather(std::span<const Motion<D>> motions,
+[[gnu::always_inline]] inline MotionLanes<D, W> gather(const Motion<D>* motions,
                                                        const LaneIndices<W>& bodies) {
-  MotionColumns<D, W> columns;
-  for (int lane = 0; lane < W; ++lane) {
-    float row[MotionColumns<D, W>::kUsed];
-    std::memcpy(row, &motions[bodies[static_cast<std::size_t>(lane)]], sizeof row);
-    for (int i = 0; i < MotionColumns<D, W>::kUsed; ++i) columns.column[i][lane] = row[i];
-  }
   MotionLanes<D, W> lanes;
-  int i = 0;
-  for (auto& value : lanes.velocity.v) value = Lanes<W>::load(columns.column[i++]);
-  for (auto& value : lanes.spin.v) value = Lanes<W>::load(columns.column[i++]);
-  for (auto& value : lanes.delta_position.v) value = Lanes<W>::load(columns.column[i++]);
-  for (auto& value : lanes.delta_rotation.v) value = Lanes<W>::load(columns.column[i++]);
+  gather_quads<kPoseQuads<D>>(motions, bodies, lanes);
   return lanes;
 }
 
-/// Writes velocity and spin back, but only to bodies with mass: a body without mass may stand in
-/// many lanes at once, and nothing changes it.
-template <int D, int W>
-[[gnu::always_inline]] inline void scatter(const MotionLanes<D, W>& lanes,
-                                           const LaneMass<D, W>& mass, const LaneIndices<W>& bodies,
-                                           std::span<Motion<D>> motions) {
-  float velocity[D][W];
-  float spin[Dim<D>::kSpin][W];
-  float inverse_mass[W];
-  for (int i = 0; i < D; ++i) lanes.velocity[i].store(velocity[i]);
-  for (int i = 0; i < Dim<D>::kSpin; ++i) lanes.spin[i].store(spin[i]);
-  mass.inverse_mass.store(inverse_mass);
-  for (int lane = 0; lane < W; ++lane) {
-    if (inverse_mass[lane] == 0.0f) continue;
-    Motion<D>& motion = motions[bodies[static_cast<std::size_t>(lane)]];
-    for (int i = 0; i < D; ++i) motion.velocity[i] = velocity[i][lane];
-    for (int i = 0; i < Dim<D>::kSpin; ++i) motion.spin[i] = spin[i][lane];
+/// Writes quads [kFrom, kTo) back, but only to the bodies in lanes of `moves`, which have mass: one
+/// without may stand in many lanes at once, and nothing changes it.
+template <int kFrom, int kTo, int D, int W>
+[[gnu::always_inline]] inline void scatter_quads(MotionLanes<D, W>& lanes, LaneBits moves,
+                                                 const LaneIndices<W>& bodies, Motion<D>* motions) {
+  for (int quad = kFrom; quad < kTo; ++quad) {
+    Lanes<W> columns[4];
+    for (int i = 0; i < 4; ++i)
+      columns[i] =
+          4 * quad + i < kMotionComponents<D> ? component(lanes, 4 * quad + i) : Lanes<W>(0.0f);
+    scatter_columns<W>(columns, moves, quad, bodies, motions);
   }
 }
 
-/// Writes the poses back, to bodies with mass.
+/// Writes velocity and spin back. What shares their quads is written as it was gathered.
 template <int D, int W>
-void scatter_pose(const MotionLanes<D, W>& lanes, const LaneMass<D, W>& mass,
-                  const LaneIndices<W>& bodies, std::span<Motion<D>> motions) {
-  float position[D][W];
-  float rotation[Dim<D>::kRotation][W];
-  float inverse_mass[W];
-  for (int i = 0; i < D; ++i) lanes.delta_position[i].store(position[i]);
-  for (int i = 0; i < Dim<D>::kRotation; ++i) lanes.delta_rotation[i].store(rotation[i]);
-  mass.inverse_mass.store(inverse_mass);
-  for (int lane = 0; lane < W; ++lane) {
-    if (inverse_mass[lane] == 0.0f) continue;
-    Motion<D>& motion = motions[bodies[static_cast<std::size_t>(lane)]];
-    for (int i = 0; i < D; ++i) motion.delta_position[i] = position[i][lane];
-    for (int i = 0; i < Dim<D>::kRotation; ++i) motion.delta_rotation[i] = rotation[i][lane];
-  }
+[[gnu::always_inline]] inline void scatter(MotionLanes<D, W>& lanes, LaneBits moves,
+                                           const LaneIndices<W>& bodies, Motion<D>* motions) {
+  scatter_quads<0, kVelocityQuads<D>>(lanes, moves, bodies, motions);
+}
+
+/// Writes the poses back. @pre velocities are as they were gathered.
+template <int D, int W>
+void scatter_pose(MotionLanes<D, W>& lanes, LaneBits moves, const LaneIndices<W>& bodies,
+                  Motion<D>* motions) {
+  scatter_quads<0, kPoseQuads<D>>(lanes, moves, bodies, motions);
 }
 
 /// q' = q + turn q (in space turn / 2) at unit length, in lanes that turn at all: for corrections,

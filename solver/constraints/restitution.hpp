@@ -28,8 +28,7 @@ L rebound_speed(const L& restitution, const L& u, const L& gap, const L& pull, c
 /// of twenty elastic discs loses its energy.
 /// @returns whether any did.
 template <int D, int W>
-bool bounce(const StepContext<D>& context, ContactBlock<D, W>& block,
-            std::span<Motion<D>> motions) {
+bool bounce_block(const StepContext<D>& context, ContactBlock<D, W>& block, Motion<D>* motions) {
   using L = Lanes<W>;
   if (!block.bounces) return false;
   bool any = false;
@@ -57,8 +56,8 @@ bool bounce(const StepContext<D>& context, ContactBlock<D, W>& block,
     apply_pair(impulse * block.normal, arms, block, a, b);
   }
   if (!any) return false;
-  scatter(a, block.mass_a, block.body_a, motions);
-  scatter(b, block.mass_b, block.body_b, motions);
+  scatter(a, block.moves_a, block.body_a, motions);
+  scatter(b, block.moves_b, block.body_b, motions);
   return true;
 }
 

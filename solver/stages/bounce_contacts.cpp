@@ -1,4 +1,3 @@
-#include "solver/constraints/restitution.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -13,17 +12,12 @@ static constexpr int kBounceSweeps = 4;
 template <int D, int W>
 void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-  bool bounces = false;
-  for (ContactBlock<D, W>& block : contacts.blocks) {
-    bounces = bounces || block.bounces;
-    for (auto& point : block.points) point.bounce_impulse = Lanes<W>(0.0f);
-  }
-  if (!bounces) return;
-  const std::span<Motion<D>> motions = scratch.motions;
+  if (!contacts.bounces) return;
+  ContactKernels<D, W>::forget_bounces(
+      block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
   for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {
-    for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-      ContactBlock<D, W>& block = contacts.blocks[static_cast<std::size_t>(i)];
-      block.bounced = bounce(context, block, motions);
+    for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
+      ContactKernels<D, W>::bounce(context, block_range<D, W>(scratch, range));
     });
     // Where nothing has bounced, the next sweep would see the same velocities.
     bool any = false;
@@ -40,9 +34,11 @@ template struct InstantiateBounce<2, 1>;
 template struct InstantiateBounce<2, 4>;
 template struct InstantiateBounce<2, 8>;
 template struct InstantiateBounce<2, 16>;
+template struct InstantiateBounce<2, kAvx2Lanes>;
 template struct InstantiateBounce<3, 1>;
 template struct InstantiateBounce<3, 4>;
 template struct InstantiateBounce<3, 8>;
 template struct InstantiateBounce<3, 16>;
+template struct InstantiateBounce<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

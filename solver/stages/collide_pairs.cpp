@@ -19,13 +19,13 @@ static float margin_of(const StepContext<D>& context, const Body<D>& a, const Bo
 
 template <int D>
 static Manifold<D> collide_pair(const StepContext<D>& context, const WorldState<D>& state,
-                                const ShapePair& pair) {
+                                const ShapePair& pair, Collider<D>& collider) {
   const Shape<D>& shape_a = state.shapes[pair.shape_a];
   const Shape<D>& shape_b = state.shapes[pair.shape_b];
   const Body<D>& a = state.bodies[shape_a.body];
   const Body<D>& b = state.bodies[shape_b.body];
-  return collide(shape_a, Pose<D>{a.position, a.rotation}, shape_b, Pose<D>{b.position, b.rotation},
-                 margin_of(context, a, b), state.polyhedra);
+  return collider(shape_a, Pose<D>{a.position, a.rotation}, shape_b,
+                  Pose<D>{b.position, b.rotation}, margin_of(context, a, b), state.polyhedra);
 }
 
 /// The impulses of the point with the same feature, so that a contact which persists starts from
@@ -40,67 +40,93 @@ static void take_impulses(const Contact<D>& old, ContactPoint<D>& point) {
   }
 }
 
+/// The points of a manifold as those of a contact; whether they touch.
 template <int D>
-static Contact<D> contact_of(const ShapePair& pair, const Manifold<D>& manifold, float slop,
-                             const Contact<D>* old) {
-  Contact<D> contact{};
-  contact.shape_a = pair.shape_a;
-  contact.shape_b = pair.shape_b;
+static void take_points(const Manifold<D>& manifold, float slop, const Contact<D>* old,
+                        Contact<D>& contact) {
   contact.point_count = manifold.point_count;
   for (std::uint32_t i = 0; i < manifold.point_count; ++i) {
     contact.points[i].feature = manifold.points[i].feature;
     if (manifold.points[i].separation <= slop) contact.touching = 1;
     if (old != nullptr) take_impulses(*old, contact.points[i]);
   }
-  return contact;
 }
 
-/// Passes the old contacts before `key`. Those of bodies that both do nothing are kept as they are,
-/// without a manifold: nobody looked for their pairs, and nothing has moved.
 template <int D>
-static auto keep_sleeping(const WorldState<D>& state,
-                          typename std::vector<Contact<D>>::const_iterator old, std::uint64_t key,
-                          StepScratch<D>& scratch) {
-  for (; old != state.contacts.end(); ++old) {
-    if (ShapePair{old->shape_a, old->shape_b}.key() >= key) break;
-    const Body<D>& a = state.bodies[state.shapes[old->shape_a].body];
-    const Body<D>& b = state.bodies[state.shapes[old->shape_b].body];
-    if (is_active(a) || is_active(b)) continue;
-    scratch.contacts.push_back(*old);
-    scratch.manifolds.push_back({});
-  }
-  return old;
+static std::uint64_t key_of(const Contact<D>& contact) {
+  return ShapePair{contact.shape_a, contact.shape_b}.key();
 }
 
-/// The contact points of every pair, with last tick's impulses where the same features met.
+/// An old contact whose pair has no points, or was not found. Those of bodies that both do nothing
+/// are kept as they are, without a manifold: nobody looked for their pairs, and nothing has moved.
+template <int D>
+static void pass_old(const WorldState<D>& state, std::uint32_t index, StepScratch<D>& scratch) {
+  const Contact<D>& old = state.contacts[index];
+  const std::uint32_t a = state.shapes[old.shape_a].body;
+  const std::uint32_t b = state.shapes[old.shape_b].body;
+  if (scratch.active[a] != 0 || scratch.active[b] != 0) {
+    if (old.touching != 0) scratch.ended.push_back(index);
+    return;
+  }
+  scratch.contacts.push_back(old);
+  scratch.manifolds.push_back({});
+}
+
+/// Lists the contact of a pair with points. `old` is where to go on among the old contacts.
+template <int D>
+static void add_contact(const WorldState<D>& state, const ShapePair& pair,
+                        const Manifold<D>& manifold, std::uint32_t& old, StepScratch<D>& scratch) {
+  const auto count = static_cast<std::uint32_t>(state.contacts.size());
+  for (; old < count && key_of(state.contacts[old]) < pair.key(); ++old)
+    pass_old(state, old, scratch);
+  if (manifold.point_count == 0) return;
+  const bool persists = old < count && key_of(state.contacts[old]) == pair.key();
+  const Contact<D>* before = persists ? &state.contacts[old] : nullptr;
+  Contact<D>& contact = scratch.contacts.emplace_back();
+  contact.shape_a = pair.shape_a;
+  contact.shape_b = pair.shape_b;
+  take_points(manifold, state.header.tuning.slop, before, contact);
+  scratch.manifolds.push_back(manifold);
+  const bool touched = persists && before->touching != 0;
+  if (contact.touching != 0 && !touched)
+    scratch.began.push_back(static_cast<std::uint32_t>(scratch.contacts.size() - 1));
+  if (contact.touching == 0 && touched) scratch.ended.push_back(old);
+  if (persists) ++old;
+}
+
+/// The contact points of every pair, with last tick's impulses where the same features met, and
+/// which contacts began and ended.
 ///
-/// Reads pairs, shapes, poses, velocities and the old contacts; writes pair_manifolds, contacts and
-/// manifolds. Each pair writes its own manifold; contacts are then listed in the order of the
-/// pairs, which is that of the shapes' slots, beside the old ones in the same order.
+/// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes
+/// pair_manifolds, contacts, manifolds, began and ended. Each pair writes its own manifold;
+/// contacts are then listed in the order of the pairs, which is that of the shapes' slots, beside
+/// the old ones in the same order. One thread does so batch by batch, while they are at hand;
+/// several find all manifolds first.
 template <int D>
 void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch) {
-  scratch.pair_manifolds.resize(scratch.pairs.size());
-  workers.parallel_for(static_cast<int>(scratch.pairs.size()), kPairGrain, [&](Range range) {
-    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
-         ++i)
-      scratch.pair_manifolds[i] = collide_pair(context, state, scratch.pairs[i]);
-  });
-
   scratch.contacts.clear();
   scratch.manifolds.clear();
-  auto old = state.contacts.begin();
-  for (std::size_t i = 0; i < scratch.pairs.size(); ++i) {
-    const ShapePair& pair = scratch.pairs[i];
-    old = keep_sleeping(state, old, pair.key(), scratch);
-    if (scratch.pair_manifolds[i].point_count == 0) continue;
-    const bool persists =
-        old != state.contacts.end() && old->shape_a == pair.shape_a && old->shape_b == pair.shape_b;
-    scratch.contacts.push_back(contact_of(pair, scratch.pair_manifolds[i], context.tuning.slop,
-                                          persists ? &*old : nullptr));
-    scratch.manifolds.push_back(scratch.pair_manifolds[i]);
+  scratch.began.clear();
+  scratch.ended.clear();
+  const int count = static_cast<int>(scratch.pairs.size());
+  const int batch = workers.count() == 1 && count > kPairGrain ? kPairGrain : count;
+  scratch.pair_manifolds.resize(static_cast<std::size_t>(batch));
+  std::uint32_t old = 0;
+  for (int begin = 0; begin < count; begin += batch) {
+    const ShapePair* pairs = scratch.pairs.data() + begin;
+    const int size = count - begin < batch ? count - begin : batch;
+    workers.parallel_for(size, kPairGrain, [&](Range range) {
+      Collider<D> collider;
+      for (int i = range.begin; i < range.end; ++i)
+        scratch.pair_manifolds[static_cast<std::size_t>(i)] =
+            collide_pair(context, state, pairs[i], collider);
+    });
+    for (int i = 0; i < size; ++i)
+      add_contact(state, pairs[i], scratch.pair_manifolds[static_cast<std::size_t>(i)], old,
+                  scratch);
   }
-  keep_sleeping(state, old, ~std::uint64_t{0}, scratch);
+  for (; old < state.contacts.size(); ++old) pass_old(state, old, scratch);
 }
 
 template void collide_pairs(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);

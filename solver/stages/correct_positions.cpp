@@ -1,4 +1,3 @@
-#include "solver/constraints/contact_position.hpp"
 #include "solver/constraints/joint_solve.hpp"
 #include "solver/stages/stages.hpp"
 
@@ -11,7 +10,7 @@ namespace cycloid::solver {
 template <int D, int W>
 void correct_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
                        Workers& workers, StepScratch<D>& scratch) {
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
     JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];
@@ -21,8 +20,8 @@ void correct_positions(const StepContext<D>& context, const WorldState<D>& state
     correct_joint(context, row, a, b);
     write_back(row, a, b, motions);
   });
-  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-    correct_contact(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
+  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
+    ContactKernels<D, W>::correct(context, block_range<D, W>(scratch, range));
   });
 }
 
@@ -34,9 +33,11 @@ template struct InstantiateCorrect<2, 1>;
 template struct InstantiateCorrect<2, 4>;
 template struct InstantiateCorrect<2, 8>;
 template struct InstantiateCorrect<2, 16>;
+template struct InstantiateCorrect<2, kAvx2Lanes>;
 template struct InstantiateCorrect<3, 1>;
 template struct InstantiateCorrect<3, 4>;
 template struct InstantiateCorrect<3, 8>;
 template struct InstantiateCorrect<3, 16>;
+template struct InstantiateCorrect<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

@@ -7,35 +7,38 @@ namespace cycloid::solver {
 /// by lane, so that a contact does not see which others share its block.
 template <int D, int W>
 static void follow_inertia(const StepScratch<D>& scratch, ContactBlock<D, W>& block) {
-  Lanes<W> turned(0.0f);
+  float turned[kLaneCount<W>] = {};
   bool any = false;
-  for (int lane = 0; lane < W; ++lane) {
-    const std::uint32_t a = block.body_a[static_cast<std::size_t>(lane)];
-    const std::uint32_t b = block.body_b[static_cast<std::size_t>(lane)];
+  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+    const std::uint32_t a = block.body_a[lane];
+    const std::uint32_t b = block.body_b[lane];
     if (scratch.inertia_turned[a] == 0 && scratch.inertia_turned[b] == 0) continue;
     set_mass(block.mass_a, lane, scratch.masses[a]);
     set_mass(block.mass_b, lane, scratch.masses[b]);
-    set_lane(turned, lane, 1.0f);
+    turned[lane] = 1.0f;
     any = true;
   }
-  if (any) set_effective_masses(turned, block);
+  if (any) ContactKernels<D, W>::weigh(turned, block);
 }
 
 /// Normal, arms and separation of pairs of balls at the present poses, and effective masses of what
 /// spins fast: wherever positions have moved.
 ///
 /// Reads motions and masses; writes blocks, each its own, so any split into ranges gives the same
-/// bits.
+/// bits. Says that positions have moved: the sweep that comes next places the arms.
 template <int D, int W>
 void evaluate_contacts(Workers& workers, StepScratch<D>& scratch) {
-  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const std::span<const Motion<D>> motions = scratch.motions;
-  workers.parallel_for(static_cast<int>(blocks.size()), kBlockGrain, [&](Range range) {
-    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
-         ++i) {
-      if (blocks[i].follows) follow_round(blocks[i], motions);
-      if (blocks[i].turns) follow_inertia(scratch, blocks[i]);
-    }
+  ++scratch.poses;
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  constexpr bool kInertiaTurns = Dim<D>::kSpin > 1;
+  if (!contacts.follows && !kInertiaTurns) return;
+  const int count = static_cast<int>(contacts.blocks.size());
+  workers.parallel_for(count, kBlockGrain, [&](Range range) {
+    const BlockRange<D, W> blocks = block_range<D, W>(scratch, range);
+    if (contacts.follows) ContactKernels<D, W>::follow(blocks);
+    if (!kInertiaTurns) return;
+    for (ContactBlock<D, W>* block = blocks.begin; block != blocks.end; ++block)
+      if (block->turns) follow_inertia(scratch, *block);
   });
 }
 
@@ -47,9 +50,11 @@ template struct InstantiateEvaluate<2, 1>;
 template struct InstantiateEvaluate<2, 4>;
 template struct InstantiateEvaluate<2, 8>;
 template struct InstantiateEvaluate<2, 16>;
+template struct InstantiateEvaluate<2, kAvx2Lanes>;
 template struct InstantiateEvaluate<3, 1>;
 template struct InstantiateEvaluate<3, 4>;
 template struct InstantiateEvaluate<3, 8>;
 template struct InstantiateEvaluate<3, 16>;
+template struct InstantiateEvaluate<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

@@ -1,13 +1,17 @@
+#include <algorithm>
+
 #include "solver/constraints/joints/unwrap.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/validate.hpp"
 
 namespace cycloid::solver {
 
-/// Reads motions; writes nothing. Serial and in slot order, so every machine names the same body.
+/// Reads the motions of who is awake, which alone can move; writes nothing. Serial and in slot
+/// order, so every machine names the same body.
 template <int D>
 Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch) {
   for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+    if (scratch.awake[i] == 0) continue;
     const Motion<D>& motion = scratch.motions[i];
     FaultField field = kFaultNone;
     if (!within(motion.spin, kSpinMax)) field = kFaultSpin;
@@ -18,6 +22,14 @@ Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch) {
     if (field != kFaultNone) return {state.header.tick + 1, {i, state.bodies[i].generation}, field};
   }
   return {};
+}
+
+/// A copy, because the scratch is not the world's own. Grows as a list that is appended to, so that
+/// contacts which come and go do not allocate in each tick.
+template <int D>
+static void take_contacts(const std::vector<Contact<D>>& from, std::vector<Contact<D>>& to) {
+  if (from.size() > to.capacity()) to.reserve(std::max(from.size(), 2 * to.capacity()));
+  to.assign(from.begin(), from.end());
 }
 
 /// x' = x + dx, q' = dq q at unit length; the contacts and impulses of this tick become the
@@ -52,7 +64,7 @@ void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
     joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
                        unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};
   }
-  state.contacts.swap(scratch.contacts);
+  take_contacts(scratch.contacts, state.contacts);
   ++state.header.tick;
 }
 

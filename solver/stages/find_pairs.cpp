@@ -1,141 +1,284 @@
 #include <algorithm>
+#include <limits>
 
 #include "solver/stages/may_touch.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
 
+/// Where a shape meets so many boxes on the average, keeping candidates does not pay.
+static constexpr std::uint64_t kSeenPerShapeMax = 64;
+
+/// Bodies that all lie in one place make pairs with the square of their number. So many more pairs
+/// than contacts, and boxes that were looked at in vain, no world needs.
+struct PairTally {
+  PairTally(std::uint64_t pairs_max, std::uint64_t candidates_max)
+      : pairs(pairs_max), candidates(candidates_max) {}
+  bool is_over() const { return pairs.is_over() || candidates.is_over(); }
+
+  Tally pairs;
+  Tally candidates;
+};
+
 template <int D>
-static void list_jointed_bodies(const WorldState<D>& state, StepScratch<D>& scratch) {
-  scratch.jointed_bodies.clear();
+static void list_jointed_bodies(const WorldState<D>& state, PairCache<D>& cache) {
+  cache.jointed_bodies.clear();
   for (const Joint<D>& joint : state.joints)
     if (joint.kind != JointKind::kFree && joint.collide_connected == 0)
-      scratch.jointed_bodies.push_back(body_pair_key(joint.body_a, joint.body_b));
+      cache.jointed_bodies.push_back(body_pair_key(joint.body_a, joint.body_b));
   // Total order: equal integers are one and the same.
-  std::sort(scratch.jointed_bodies.begin(), scratch.jointed_bodies.end());
-}
-
-/// A body reaches as far as it flies in a tick, so that what it will hit is among the pairs.
-template <int D>
-static float flight_of(const StepContext<D>& context, const Body<D>& body) {
-  return context.tuning.speculative_distance + context.tick_s * length(body.velocity);
+  std::sort(cache.jointed_bodies.begin(), cache.jointed_bodies.end());
 }
 
 /// Their boxes are not widened, because those of all that may meet them are; so they stay the same
 /// as long as no static body comes, goes or is moved.
 template <int D>
 static void list_statics(const WorldState<D>& state, StepScratch<D>& scratch) {
-  if (scratch.statics_are_listed) return;
+  constexpr float kEverywhere = std::numeric_limits<float>::infinity();
   scratch.leaves.clear();
   scratch.unbounded.clear();
   for (std::uint32_t s = 0; s < state.shapes.size(); ++s) {
     const Shape<D>& shape = state.shapes[s];
-    if (shape.kind == ShapeKind::kHalfSpace) scratch.unbounded.push_back(s);
-    if (shape.kind == ShapeKind::kFree || shape.kind == ShapeKind::kHalfSpace) continue;
+    if (shape.kind == ShapeKind::kFree) continue;
     const Body<D>& body = state.bodies[shape.body];
-    if (body.kind != BodyKind::kStatic) continue;
-    scratch.leaves.push_back({bounds_of(shape, Pose<D>{body.position, body.rotation}, 0.0f), s});
+    Bounds<D>& box = scratch.pair_cache.boxes[s];
+    if (shape.kind == ShapeKind::kHalfSpace) {
+      scratch.unbounded.push_back(s);
+      for (int i = 0; i < D; ++i) {
+        box.lower[i] = -kEverywhere;
+        box.upper[i] = kEverywhere;
+      }
+    } else if (body.kind == BodyKind::kStatic) {
+      box = bounds_of(shape, Pose<D>{body.position, body.rotation}, 0.0f);
+      scratch.leaves.push_back({box, s});
+    }
   }
   scratch.static_tree.build(scratch.leaves);
-  scratch.statics_are_listed = true;
 }
 
 template <int D>
-static void list_leaves(const StepContext<D>& context, const WorldState<D>& state,
-                        StepScratch<D>& scratch) {
-  scratch.leaves.clear();
-  for (const Body<D>& body : state.bodies) {
-    if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
-    const Pose<D> pose{body.position, body.rotation};
-    const float flight = flight_of(context, body);
-    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next)
-      scratch.leaves.push_back({bounds_of(state.shapes[s], pose, flight), s});
+static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
+  const std::size_t count = state.shapes.size();
+  cache.boxes.resize(count);
+  cache.active.assign(count, 0);
+  cache.is_still.assign(count, 0);
+  cache.looks.assign(count, 0);
+  cache.seen.assign(count, 0);
+  cache.seen_sum = 0;
+  cache.candidates.clear();
+  cache.forgotten.clear();
+  cache.fat.clear();
+  list_jointed_bodies(state, cache);
+  if (!cache.statics_are_known) list_statics(state, scratch);
+  cache.statics_are_known = true;
+  cache.is_known = true;
+}
+
+/// Of shapes that were changed by a call, or are gone, nothing is known any more.
+template <int D>
+static void forget_changed(const WorldState<D>& state, PairCache<D>& cache) {
+  const std::size_t count = state.shapes.size();
+  cache.boxes.resize(count);
+  cache.active.resize(count, 0);
+  cache.is_still.resize(count, 0);
+  cache.looks.resize(count, 0);
+  cache.seen.resize(count, 0);
+  for (const std::uint32_t shape : cache.forgotten) {
+    if (cache.looks[shape] != 0) continue;
+    cache.fat.remove(shape);
+    cache.active[shape] = 0;
+    cache.is_still[shape] = 0;
+    cache.looks[shape] = 1;
+    cache.looking.push_back(shape);
   }
+  cache.forgotten.clear();
+  list_jointed_bodies(state, cache);
+}
+
+/// The box of each shape that can move: widened by the speculative distance and by how far its body
+/// flies in a tick, so that what it will hit is among the pairs. Those that left their fat box will
+/// look anew.
+template <int D>
+static void move_boxes(const StepContext<D>& context, const WorldState<D>& state,
+                       StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
+  scratch.active.assign(state.bodies.size(), 0);
+  scratch.bodies_asleep = 0;
+  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+    const Body<D>& body = state.bodies[i];
+    if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
+    const std::uint8_t active = is_active(body) ? 1 : 0;
+    scratch.active[i] = active;
+    if (active == 0 && body.inverse_mass > 0.0f) ++scratch.bodies_asleep;
+    if (body.first_shape == kNone) continue;
+    if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
+    const Pose<D> pose{body.position, body.rotation};
+    const float margin =
+        context.tuning.speculative_distance + context.tick_s * length(body.velocity);
+    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
+      cache.active[s] = active;
+      cache.is_still[s] = active ^ 1;
+      cache.boxes[s] = bounds_of(state.shapes[s], pose, margin);
+      if (cache.fat.contains(s) && lies_in(cache.boxes[s], cache.fat.box(s))) continue;
+      cache.fat.put(s, fattened(cache.boxes[s], context.tick_s * body.velocity));
+      if (cache.looks[s] != 0) continue;
+      cache.looks[s] = 1;
+      cache.looking.push_back(s);
+    }
+  }
+  cache.fat.settle();
 }
 
 static ShapePair ordered(std::uint32_t a, std::uint32_t b) {
   return a < b ? ShapePair{a, b} : ShapePair{b, a};
 }
 
-/// Bodies that all lie in one place make pairs with the square of their number. So many more pairs
-/// than contacts, and boxes that were looked at in vain, no world needs.
-struct PairTally {
-  explicit PairTally(std::uint64_t contacts_max)
-      : pairs(8 * contacts_max + 65536), candidates(64 * (8 * contacts_max + 65536)) {}
-
-  Tally pairs;
-  Tally candidates;
-};
-
-/// Pairs of the leaves in `range`: each with the half-spaces, with the static shapes and with the
-/// leaves it overlaps. Of two that both move, the lower rank reports the pair; a leaf that is
-/// asleep never looks.
+/// The candidates of one shape: half-spaces, static shapes, and those that can move. Of two that
+/// both look, the lower slot reports the pair.
 template <int D>
-static void find_in_range(const WorldState<D>& state, const StepScratch<D>& scratch, Range range,
-                          PairTally& tally, std::vector<ShapePair>& found) {
-  found.clear();
-  std::size_t counted = 0;
-  std::uint64_t seen = 0;
-  const auto moving = [&](std::uint32_t shape) {
-    return is_active(state.bodies[state.shapes[shape].body]);
+static std::uint32_t look(const WorldState<D>& state, const StepScratch<D>& scratch,
+                          std::uint32_t shape, std::vector<ShapePair>& found) {
+  const PairCache<D>& cache = scratch.pair_cache;
+  const Bounds<D>& bounds = cache.fat.box(shape);
+  auto seen = static_cast<std::uint32_t>(scratch.unbounded.size());
+  const auto report = [&](std::uint32_t other) {
+    if (may_touch(state, scratch, shape, other)) found.push_back(ordered(shape, other));
   };
-  for (int rank = range.begin; rank < range.end; ++rank) {
-    const auto& leaf = scratch.tree.leaf(rank);
-    if (!moving(leaf.id)) continue;
-    if (tally.pairs.is_over() || tally.candidates.is_over()) return;
-    seen += scratch.unbounded.size();
-    for (const std::uint32_t half_space : scratch.unbounded)
-      if (may_touch(state, scratch, leaf.id, half_space))
-        found.push_back(ordered(leaf.id, half_space));
-    scratch.static_tree.query(leaf.bounds, [&](int other_rank) {
-      ++seen;
-      const std::uint32_t other = scratch.static_tree.leaf(other_rank).id;
-      if (may_touch(state, scratch, leaf.id, other)) found.push_back(ordered(leaf.id, other));
-    });
-    scratch.tree.query(leaf.bounds, [&](int other_rank) {
-      ++seen;
-      const std::uint32_t other = scratch.tree.leaf(other_rank).id;
-      if (other == leaf.id || (other_rank < rank && moving(other))) return;
-      if (may_touch(state, scratch, leaf.id, other)) found.push_back(ordered(leaf.id, other));
-    });
-    tally.pairs.add(found.size() - counted);
-    tally.candidates.add(seen);
-    counted = found.size();
-    seen = 0;
+  for (const std::uint32_t half_space : scratch.unbounded) report(half_space);
+  scratch.static_tree.query(bounds, [&](int rank) {
+    ++seen;
+    report(scratch.static_tree.leaf(rank).id);
+  });
+  cache.fat.query(bounds, [&](std::uint32_t other) {
+    ++seen;
+    if (other != shape && (cache.looks[other] == 0 || shape < other)) report(other);
+  });
+  return seen;
+}
+
+/// The candidates of all that look, sorted. False where there are more than `tally` takes.
+template <int D>
+static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tally,
+                    StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
+  const int count = static_cast<int>(cache.looking.size());
+  const int chunks = (count + kPairGrain - 1) / kPairGrain;
+  if (cache.found.size() < static_cast<std::size_t>(chunks))
+    cache.found.resize(static_cast<std::size_t>(chunks));
+  for (const std::uint32_t shape : cache.looking) cache.seen_sum -= cache.seen[shape];
+  tally.candidates.add(cache.seen_sum);
+  workers.parallel_for(count, kPairGrain, [&](Range range) {
+    auto& found = cache.found[static_cast<std::size_t>(range.begin / kPairGrain)];
+    found.clear();
+    for (int i = range.begin; i < range.end; ++i) {
+      if (tally.is_over()) return;
+      const std::uint32_t shape = cache.looking[static_cast<std::size_t>(i)];
+      const std::size_t before = found.size();
+      cache.seen[shape] = cache.fat.contains(shape) ? look(state, scratch, shape, found) : 0;
+      tally.pairs.add(found.size() - before);
+      tally.candidates.add(cache.seen[shape]);
+    }
+  });
+  if (tally.is_over()) return false;
+  for (const std::uint32_t shape : cache.looking) cache.seen_sum += cache.seen[shape];
+  cache.fresh.clear();
+  for (int i = 0; i < chunks; ++i) {
+    const auto& found = cache.found[static_cast<std::size_t>(i)];
+    cache.fresh.insert(cache.fresh.end(), found.begin(), found.end());
   }
+  // Total order: a pair of slots is found once.
+  std::sort(cache.fresh.begin(), cache.fresh.end(),
+            [](const ShapePair& a, const ShapePair& b) { return a.key() < b.key(); });
+  return true;
+}
+
+/// In a crowd: every box as it is, and every active shape looks in every tick, up to a bound that
+/// depends on the state alone.
+template <int D>
+static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
+  cache.fat.clear();
+  cache.looking.clear();
+  cache.candidates.clear();
+  cache.seen_sum = 0;
+  for (const Body<D>& body : state.bodies) {
+    if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
+    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
+      cache.fat.put(s, cache.boxes[s]);
+      cache.seen[s] = 0;
+      cache.looks[s] = cache.active[s];
+      if (cache.active[s] != 0) cache.looking.push_back(s);
+    }
+  }
+  cache.fat.settle();
+  const std::uint64_t pairs_max = 8 * std::uint64_t{state.header.limits.contacts} + 65536;
+  PairTally tally(pairs_max, 64 * pairs_max);
+  cache.is_known = false;
+  return look_up(state, workers, tally, scratch);
+}
+
+/// Old candidates and new ones in one order, without the old ones of shapes that looked anew.
+template <int D>
+static void merge_candidates(StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
+  std::vector<ShapePair>& merged = scratch.pairs;
+  merged.clear();
+  auto fresh = cache.fresh.begin();
+  for (const ShapePair& pair : cache.candidates) {
+    if ((cache.looks[pair.shape_a] | cache.looks[pair.shape_b]) != 0) continue;
+    for (; fresh != cache.fresh.end() && fresh->key() < pair.key(); ++fresh)
+      merged.push_back(*fresh);
+    merged.push_back(pair);
+  }
+  merged.insert(merged.end(), fresh, cache.fresh.end());
+  // Not swapped: steps work in shared memory, which would then change its size with each world.
+  cache.candidates.assign(merged.begin(), merged.end());
+  for (const std::uint32_t shape : cache.looking) cache.looks[shape] = 0;
+  cache.looking.clear();
+}
+
+/// The candidates whose boxes overlap now and of which one takes part.
+template <int D>
+static void list_pairs(StepScratch<D>& scratch) {
+  const PairCache<D>& cache = scratch.pair_cache;
+  scratch.pairs.clear();
+  for (const ShapePair& pair : cache.candidates)
+    if ((cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0 &&
+        overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]))
+      scratch.pairs.push_back(pair);
 }
 
 /// Every pair of shapes whose boxes overlap and that may touch; those of bodies that can move are
 /// widened by the speculative distance and a tick's flight.
 ///
-/// Reads shapes, bodies and joints; writes leaves, both trees and pairs. Chunks of leaves write
-/// lists of their own, and the lists are sorted by shape slots at the end, so neither threads nor
-/// the shape of the tree show in the result.
+/// Reads shapes, bodies and joints; writes the tree of static shapes, the pair cache, who is
+/// active, and pairs.
+/// Pairs are those of the boxes of this tick in the order of shape slots, so neither threads nor
+/// what the cache holds show in the result.
 /// @returns false, and no pairs, where there are far more than `limits.contacts`.
 template <int D>
 bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch) {
-  list_jointed_bodies(state, scratch);
-  list_statics(state, scratch);
-  list_leaves(context, state, scratch);
-  scratch.tree.build(scratch.leaves);
-  const int chunks = (scratch.tree.size() + kPairGrain - 1) / kPairGrain;
-  if (scratch.found.size() < static_cast<std::size_t>(chunks))
-    scratch.found.resize(static_cast<std::size_t>(chunks));
-  PairTally tally(state.header.limits.contacts);
-  workers.parallel_for(scratch.tree.size(), kPairGrain, [&](Range range) {
-    find_in_range(state, scratch, range, tally,
-                  scratch.found[static_cast<std::size_t>(range.begin / kPairGrain)]);
-  });
+  PairCache<D>& cache = scratch.pair_cache;
   scratch.pairs.clear();
-  if (tally.pairs.is_over() || tally.candidates.is_over()) return false;
-  for (int i = 0; i < chunks; ++i) {
-    const auto& found = scratch.found[static_cast<std::size_t>(i)];
-    scratch.pairs.insert(scratch.pairs.end(), found.begin(), found.end());
+  cache.looking.clear();
+  if (!cache.is_known)
+    start_anew(state, scratch);
+  else if (!cache.forgotten.empty())
+    forget_changed(state, cache);
+  move_boxes(context, state, scratch);
+  if (!cache.looking.empty()) {
+    // Each pair of boxes that overlap was seen by one of the two at least. So with this bound a
+    // tick that is within it is also within the bound of a crowd.
+    const std::uint64_t pairs_max = 8 * std::uint64_t{state.header.limits.contacts} + 65536;
+    const std::uint64_t seen_max = std::min(pairs_max, kSeenPerShapeMax * (cache.fat.size() + 16));
+    PairTally tally(seen_max, seen_max);
+    if (!look_up(state, workers, tally, scratch) && !look_up_crowd(state, workers, scratch))
+      return false;
+    merge_candidates(scratch);
   }
-  // Total order: a pair of slots is found once.
-  std::sort(scratch.pairs.begin(), scratch.pairs.end(),
-            [](const ShapePair& a, const ShapePair& b) { return a.key() < b.key(); });
+  list_pairs(scratch);
   return true;
 }
 

@@ -1,3 +1,5 @@
+#include "solver/constraints/motion_lanes.hpp"
+#include "solver/constraints/trig_lanes.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -88,6 +90,44 @@ static bool turn_inertia(float h, const Body<3>& body, const Motion<3>& motion, 
   return true;
 }
 
+/// x' = x + h v and q' = exp(h w) q of a body; see integrate_positions.
+template <int D>
+static void move_body(float h, const Body<D>& body, std::size_t i, StepScratch<D>& scratch) {
+  Motion<D>& motion = scratch.motions[i];
+  motion.delta_position += h * motion.velocity;
+  turn_freely(h, body, motion);
+  const bool turned = turn_inertia(h, body, motion, scratch.masses[i]);
+  scratch.inertia_turned[i] = turned ? 1 : 0;
+  if (!turned) return;
+  const Spin<D> rate = scratch.masses[i].inverse_inertia * body.torque;
+  for (int axis = 0; axis < Dim<D>::kSpin; ++axis)
+    scratch.accelerations[i].rate[D + axis] = rate[axis];
+}
+
+/// The same for four bodies of the plane in lanes, to the bit as turn_by does it. Only those in
+/// `wanted` are written.
+static void move_four(float h, LaneBits wanted, Motion<2>* motions) {
+  using L = Lanes<4>;
+  constexpr LaneIndices<4> kNext = {0, 1, 2, 3};
+  MotionLanes<2, 4> motion = gather<2, 4>(motions, kNext);
+  motion.delta_position += L(h) * motion.velocity;
+  const L turn = L(h) * motion.spin[0];
+  Rotation<2, L> by;
+  sin_cos(turn, by[1], by[0]);
+  const Rotation<2, L> turned = compose(by, motion.delta_rotation);
+  const L size = sqrt(dot(turned, turned));
+  const auto has_size = size > L(1.0e-12f);
+  const L inverse = L(1.0f) / select(has_size, size, L(1.0f));
+  const L square = turn * turn;
+  for (int i = 0; i < 2; ++i) {
+    L& q = motion.delta_rotation[i];
+    const L to = select(has_size, inverse * turned[i], q);
+    // What does not turn keeps its bits; what is no number does not.
+    q = select(square > L(0.0f), to, select(square < L(1.0f), q, to));
+  }
+  scatter_pose(motion, wanted, kNext, motions);
+}
+
 /// x' = x + h v,  q' = exp(h w) q, at unit length; in space I(q') w' = I(q) w.
 ///
 /// Reads each motion's velocity and spin, and its pseudo-velocity where there are any; writes its
@@ -97,15 +137,21 @@ void integrate_positions(const StepContext<D>& context, const WorldState<D>& sta
                          Workers& workers, StepScratch<D>& scratch) {
   const bool pseudo = context.tuning.stabilisation == Stabilisation::kSplitImpulse;
   workers.parallel_for(static_cast<int>(state.bodies.size()), kBodyGrain, [&](Range range) {
-    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
-         ++i) {
+    auto i = static_cast<std::size_t>(range.begin);
+    const auto end = static_cast<std::size_t>(range.end);
+    if constexpr (Dim<D>::kSpin == 1) {
+      for (; !pseudo && i + 4 <= end; i += 4) {
+        LaneBits awake = 0;
+        for (std::size_t lane = 0; lane < 4; ++lane)
+          awake |= (scratch.awake[i + lane] != 0 ? LaneBits{1} : LaneBits{0}) << lane;
+        if (awake != 0) move_four(context.h, awake, &scratch.motions[i]);
+      }
+    }
+    for (; i < end; ++i) {
       if (scratch.awake[i] == 0) continue;
-      Motion<D>& motion = scratch.motions[i];
-      motion.delta_position += context.h * motion.velocity;
-      turn_freely(context.h, state.bodies[i], motion);
-      const bool turned = turn_inertia(context.h, state.bodies[i], motion, scratch.masses[i]);
-      scratch.inertia_turned[i] = turned ? 1 : 0;
+      move_body(context.h, state.bodies[i], i, scratch);
       if (!pseudo) continue;
+      Motion<D>& motion = scratch.motions[i];
       motion.delta_position += context.h * scratch.saved_motions[i].velocity;
       turn_by(context.h * scratch.saved_motions[i].spin, motion);
     }

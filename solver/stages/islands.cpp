@@ -1,5 +1,6 @@
 #include "solver/collision/collide.hpp"
 #include "solver/stages/stages.hpp"
+#include "solver/trace.hpp"
 
 namespace cycloid::solver {
 
@@ -31,7 +32,8 @@ static bool drives(const Joint<D>& joint) {
 /// Joins the moving bodies of every contact and joint. What a driven joint or a moving kinematic
 /// body holds on to stays awake.
 template <int D>
-static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
+static void find_islands(const WorldState<D>& state, const std::vector<Contact<D>>& contacts,
+                         StepScratch<D>& scratch) {
   std::vector<std::uint32_t>& parent = scratch.islands;
   parent.resize(state.bodies.size());
   scratch.kept_awake.assign(state.bodies.size(), 0);
@@ -41,13 +43,36 @@ static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
     const bool b_moves = state.bodies[b].inverse_mass > 0.0f;
     if (a_moves && b_moves) join(parent, a, b);
     const bool pushed =
-        (!a_moves && is_active(state.bodies[a])) || (!b_moves && is_active(state.bodies[b]));
+        (!a_moves && scratch.active[a] != 0) || (!b_moves && scratch.active[b] != 0);
     if (keep || pushed) scratch.kept_awake[a_moves ? a : b] = 1;
   };
-  for (const Contact<D>& contact : scratch.contacts)
+  for (const Contact<D>& contact : contacts)
     link(state.shapes[contact.shape_a].body, state.shapes[contact.shape_b].body, false);
   for (const Joint<D>& joint : state.joints)
     if (joint.kind != JointKind::kFree) link(joint.body_a, joint.body_b, drives(joint));
+  scratch.islands_are_known = true;
+}
+
+/// Whether something that is active, or drives, holds on to a body that is asleep.
+template <int D>
+static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scratch) {
+  if (scratch.bodies_asleep == 0) return false;
+  const auto sleeps = [&](std::uint32_t body) {
+    return scratch.active[body] == 0 && state.bodies[body].inverse_mass > 0.0f;
+  };
+  for (const Contact<D>& contact : scratch.contacts) {
+    const std::uint32_t a = state.shapes[contact.shape_a].body;
+    const std::uint32_t b = state.shapes[contact.shape_b].body;
+    if (scratch.active[a] == scratch.active[b]) continue;
+    if (sleeps(a) || sleeps(b)) return true;
+  }
+  for (const Joint<D>& joint : state.joints) {
+    if (joint.kind == JointKind::kFree) continue;
+    const bool wakes =
+        drives(joint) || scratch.active[joint.body_a] != scratch.active[joint.body_b];
+    if (wakes && (sleeps(joint.body_a) || sleeps(joint.body_b))) return true;
+  }
+  return false;
 }
 
 /// The contacts of bodies that woke have no manifold yet: their pairs were not looked for.
@@ -71,60 +96,71 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
 }
 
 /// Islands of bodies that contacts and joints hold together, and which bodies are awake in this
-/// tick: a sleeping island wakes as a whole when one that moves touches it.
+/// tick: a sleeping island wakes as a whole when one that moves touches it. Where none does, who is
+/// awake is who is active, and islands are not looked for; unless somebody writes the step down.
 ///
-/// Reads contacts, joints and bodies; writes islands, awake, kept_awake and the manifolds of
-/// contacts that woke. Serial; a function of ids alone.
+/// Reads contacts, joints, bodies and who is active; writes islands, awake, kept_awake and the
+/// manifolds of contacts that woke. Serial; a function of ids alone.
 template <int D>
 void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch) {
-  find_islands(state, scratch);
   const std::size_t count = state.bodies.size();
-  scratch.awake.assign(count + 1, 0);
+  scratch.awake.assign(scratch.active.begin(), scratch.active.end());
+  scratch.awake.push_back(0);
+  scratch.islands_are_known = false;
+  const bool is_written = scratch.trace != nullptr && scratch.trace->listener == nullptr;
+  if (!is_written && !wakes_somebody(state, scratch)) return;
+  find_islands(state, scratch.contacts, scratch);
   scratch.island_flags.assign(count, 0);
   for (std::uint32_t i = 0; i < count; ++i)
-    if (is_active(state.bodies[i]) || scratch.kept_awake[i] != 0)
+    if (scratch.active[i] != 0 || scratch.kept_awake[i] != 0)
       scratch.island_flags[root_of(scratch.islands, i)] = 1;
   bool woke = false;
   for (std::uint32_t i = 0; i < count; ++i) {
-    const Body<D>& body = state.bodies[i];
-    const bool moves = body.inverse_mass > 0.0f;
-    const bool awake =
-        moves ? scratch.island_flags[root_of(scratch.islands, i)] != 0 : is_active(body);
-    scratch.awake[i] = awake ? 1 : 0;
-    woke = woke || (moves && awake && !is_active(body));
+    if (!(state.bodies[i].inverse_mass > 0.0f)) continue;
+    scratch.awake[i] = scratch.island_flags[root_of(scratch.islands, i)];
+    woke = woke || (scratch.awake[i] != 0 && scratch.active[i] == 0);
   }
   if (woke) collide_woken(context, state, scratch);
+}
+
+/// Counts the ticks at rest. Whether a body has rested for long enough to fall asleep.
+template <int D>
+static bool rests_long(const StepContext<D>& context, Body<D>& body) {
+  const float speed = length(body.velocity) + body.extent * length(body.spin);
+  const bool rested = body.asleep == 0 && speed < context.tuning.sleep_speed;
+  body.rest_ticks = rested ? body.rest_ticks + 1 : 0;  // Who has just woken starts anew.
+  body.asleep = 0;
+  return static_cast<float>(body.rest_ticks) >= context.tuning.sleep_s / context.tick_s;
 }
 
 /// An island whose bodies have all been slower than sleep_speed for sleep_s falls asleep: its
 /// velocities become zero, and until it wakes none of its state changes.
 ///
-/// Reads motions and islands; writes rest_ticks, asleep and, of bodies that fall asleep,
-/// velocities. Serial, in slot order.
+/// Reads motions, contacts, joints and awake; writes rest_ticks, asleep, islands where somebody has
+/// rested for long, and, of bodies that fall asleep, velocities. Serial, in slot order.
 template <int D>
-void rest_islands(const StepContext<D>& context, const StepScratch<D>& scratch,
-                  WorldState<D>& state) {
-  const Tuning& tuning = context.tuning;
-  const float wanted = tuning.sleep_s / context.tick_s;
-  std::vector<std::uint8_t> restless(state.bodies.size(), tuning.sleep_s > 0.0f ? 0 : 1);
-  const auto root = [&](std::uint32_t i) {
-    while (scratch.islands[i] != i) i = scratch.islands[i];
-    return i;
+void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state) {
+  const auto takes_part = [&](std::uint32_t i) {
+    return scratch.awake[i] != 0 && state.bodies[i].inverse_mass != 0.0f;
   };
+  std::vector<std::uint8_t>& restless = scratch.island_flags;
+  restless.assign(state.bodies.size(), 0);
+  bool any_rests = false;
   for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
-    Body<D>& body = state.bodies[i];
-    if (scratch.awake[i] == 0 || body.inverse_mass == 0.0f) continue;
-    const float speed = length(body.velocity) + body.extent * length(body.spin);
-    const bool rested = body.asleep == 0 && speed < tuning.sleep_speed;
-    body.rest_ticks = rested ? body.rest_ticks + 1 : 0;  // Who has just woken starts anew.
-    body.asleep = 0;
-    const bool rests = static_cast<float>(body.rest_ticks) >= wanted;
-    if (!rests || scratch.kept_awake[i] != 0) restless[root(i)] = 1;
+    if (!takes_part(i)) continue;
+    const bool rests = rests_long(context, state.bodies[i]);
+    restless[i] = rests ? 0 : 1;
+    any_rests = any_rests || rests;
   }
+  if (!any_rests || !(context.tuning.sleep_s > 0.0f)) return;
+  if (!scratch.islands_are_known) find_islands(state, state.contacts, scratch);
+  for (std::uint32_t i = 0; i < state.bodies.size(); ++i)
+    if (takes_part(i) && (restless[i] != 0 || scratch.kept_awake[i] != 0))
+      restless[root_of(scratch.islands, i)] = 1;
   for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+    if (!takes_part(i) || restless[root_of(scratch.islands, i)] != 0) continue;
     Body<D>& body = state.bodies[i];
-    if (scratch.awake[i] == 0 || body.inverse_mass == 0.0f || restless[root(i)] != 0) continue;
     body.asleep = 1;
     body.velocity = Vec<D>::zero();
     body.spin = Spin<D>::zero();
@@ -133,7 +169,7 @@ void rest_islands(const StepContext<D>& context, const StepScratch<D>& scratch,
 
 template void wake_islands(const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);
 template void wake_islands(const StepContext<3>&, const WorldState<3>&, StepScratch<3>&);
-template void rest_islands(const StepContext<2>&, const StepScratch<2>&, WorldState<2>&);
-template void rest_islands(const StepContext<3>&, const StepScratch<3>&, WorldState<3>&);
+template void rest_islands(const StepContext<2>&, StepScratch<2>&, WorldState<2>&);
+template void rest_islands(const StepContext<3>&, StepScratch<3>&, WorldState<3>&);
 
 }  // namespace cycloid::solver

@@ -24,8 +24,9 @@ bool may_touch(const WorldState<D>& state, const StepScratch<D>& scratch, std::u
   if (a.body == b.body) return false;
   if (!responds(state.bodies[a.body].kind) && !responds(state.bodies[b.body].kind)) return false;
   if (!filters_meet(a.filter, b.filter)) return false;
-  return !std::binary_search(scratch.jointed_bodies.begin(), scratch.jointed_bodies.end(),
-                             body_pair_key(a.body, b.body));
+  const std::vector<std::uint64_t>& jointed = scratch.pair_cache.jointed_bodies;
+  return jointed.empty() ||
+         !std::binary_search(jointed.begin(), jointed.end(), body_pair_key(a.body, b.body));
 }
 
 }  // namespace cycloid::solver

@@ -1,3 +1,6 @@
+#include <cstring>
+#include <type_traits>
+
 #include "solver/constraints/contact_lanes.hpp"
 #include "solver/constraints/contact_rolling.hpp"
 #include "solver/stages/stages.hpp"
@@ -9,11 +12,10 @@ template <int D>
 struct ContactNumbers {
   std::uint32_t body_a;
   std::uint32_t body_b;
-  float friction;
+  float square_friction;  ///< Of the pair's coefficient.
   float restitution;
   float rolling;  ///< m
   float twist;    ///< m
-  Softness softness;
 };
 
 /// What a shape rolls on; 0 for what has corners.
@@ -24,22 +26,18 @@ static float rolling_radius(const Shape<D>& shape) {
 }
 
 template <int D>
-static ContactNumbers<D> numbers_of(const StepContext<D>& context, const WorldState<D>& state,
-                                    const Contact<D>& contact) {
+static ContactNumbers<D> numbers_of(const WorldState<D>& state, const Contact<D>& contact) {
   const Shape<D>& a = state.shapes[contact.shape_a];
   const Shape<D>& b = state.shapes[contact.shape_b];
   const Material& material_a = state.materials[a.material];
   const Material& material_b = state.materials[b.material];
-  const bool both_move =
-      state.bodies[a.body].inverse_mass > 0.0f && state.bodies[b.body].inverse_mass > 0.0f;
   const float radius = max(rolling_radius(a), rolling_radius(b));
   return {a.body,
           b.body,
-          sqrt(material_a.friction * material_b.friction),
+          material_a.friction * material_b.friction,
           max(material_a.restitution, material_b.restitution),
           max(material_a.rolling_resistance, material_b.rolling_resistance) * radius,
-          twist_resistance<D>(material_a, material_b) * radius,
-          both_move ? context.contact : context.contact_static};
+          twist_resistance<D>(material_a, material_b) * radius};
 }
 
 template <int D>
@@ -82,12 +80,13 @@ static void set_round(const WorldState<D>& state, const Contact<D>& contact, int
   const bool round = is_centred_ball(a) && is_centred_ball(b);
   set_lane(block.turns_a, lane, is_centred_ball(a) ? 0.0f : 1.0f);
   set_lane(block.turns_b, lane, is_centred_ball(b) ? 0.0f : 1.0f);
-  set_lane(block.is_round, lane, round ? 1.0f : 0.0f);
+  if (!round) return;
+  set_lane(block.is_round, lane, 1.0f);
   set_lane(block.radius_a, lane, a.radius);
   set_lane(block.radius_b, lane, b.radius);
   set_lane(block.centre_offset, lane,
            state.bodies[b.body].position - state.bodies[a.body].position);
-  block.follows = block.follows || round;
+  block.follows = true;
 }
 
 template <int D>
@@ -102,35 +101,35 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
                         const StepScratch<D>& scratch, int index, int lane,
                         ContactBlock<D, W>& block) {
   const auto i = static_cast<std::size_t>(index);
-  const auto l = static_cast<std::size_t>(lane);
   const Contact<D>& contact = scratch.contacts[i];
   const Manifold<D>& manifold = scratch.manifolds[i];
-  const ContactNumbers<D> numbers = numbers_of(context, state, contact);
-  block.body_a[l] = numbers.body_a;
-  block.body_b[l] = numbers.body_b;
-  block.contact[l] = static_cast<std::uint32_t>(index);
+  const ContactNumbers<D> numbers = numbers_of(state, contact);
+  block.body_a[lane] = numbers.body_a;
+  block.body_b[lane] = numbers.body_b;
+  block.contact[lane] = static_cast<std::uint32_t>(index);
   const BodyMass<D>& mass_a = scratch.masses[numbers.body_a];
   const BodyMass<D>& mass_b = scratch.masses[numbers.body_b];
+  if (mass_a.inverse_mass != 0.0f) block.moves_a |= LaneBits{1} << lane;
+  if (mass_b.inverse_mass != 0.0f) block.moves_b |= LaneBits{1} << lane;
   set_mass(block.mass_a, lane, mass_a);
   set_mass(block.mass_b, lane, mass_b);
   set_lane(block.normal, lane, manifold.normal);
-  set_lane(block.share_b, lane, mass_b.inverse_mass / (mass_a.inverse_mass + mass_b.inverse_mass));
-  set_lane(block.friction, lane, numbers.friction);
+  set_lane(block.friction, lane,
+           numbers.square_friction);  // ContactKernels::complete takes the root.
   set_lane(block.restitution, lane, numbers.restitution);
   set_lane(block.rolling, lane, numbers.rolling);
   set_lane(block.twist, lane, numbers.twist);
   set_lane(block.rolling_impulse, lane, context.tuning.warm_starting * contact.rolling_impulse);
-  const Vec<D> pulls = free_acceleration(context, state.bodies[numbers.body_a]) -
-                       free_acceleration(context, state.bodies[numbers.body_b]);
-  set_lane(block.pull, lane, max(dot(manifold.normal, pulls), 0.0f));
+  if (numbers.restitution > 0.0f) {  // Only bounces ask for it.
+    const Vec<D> pulls = free_acceleration(context, state.bodies[numbers.body_a]) -
+                         free_acceleration(context, state.bodies[numbers.body_b]);
+    set_lane(block.pull, lane, max(dot(manifold.normal, pulls), 0.0f));
+  }
   set_round(state, contact, lane, block);
   block.turns = block.turns || can_turn(mass_a) || can_turn(mass_b);
-  block.rubs = block.rubs || numbers.friction > 0.0f;
+  block.rubs = block.rubs || numbers.square_friction > 0.0f;
   block.rolls = block.rolls || numbers.rolling > 0.0f || numbers.twist > 0.0f;
   block.bounces = block.bounces || numbers.restitution > 0.0f;
-  set_lane(block.bias_rate, lane, numbers.softness.bias_rate);
-  set_lane(block.mass_scale, lane, numbers.softness.mass_scale);
-  set_lane(block.impulse_scale, lane, numbers.softness.impulse_scale);
   if (contact.point_count > block.point_count) block.point_count = contact.point_count;
   for (std::uint32_t p = 0; p < contact.point_count; ++p) {
     const PointInput<D> in{manifold.points[p], contact.points[p], context.tuning.warm_starting};
@@ -140,10 +139,12 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
 
 template <int D, int W>
 static void clear(std::uint32_t resting_body, ContactBlock<D, W>& block) {
-  block = ContactBlock<D, W>{};
-  block.body_a.fill(resting_body);
-  block.body_b.fill(resting_body);
-  block.contact.fill(kNone);
+  static_assert(std::is_trivially_copyable_v<ContactBlock<D, W>>);
+  std::memset(&block, 0,
+              sizeof block);  // Assigned, a zero block would first be made and then copied.
+  for (std::uint32_t& body : block.body_a) body = resting_body;
+  for (std::uint32_t& body : block.body_b) body = resting_body;
+  for (std::uint32_t& contact : block.contact) contact = kNone;
 }
 
 /// Which contacts of the colouring's order a block holds.
@@ -154,8 +155,8 @@ static Range contacts_of_block(const Range& color, int block, int width) {
 
 /// Fills blocks of W contacts, colour by colour; the overflow gets one contact per block.
 ///
-/// Reads contacts, manifolds, materials, masses and motions; writes the blocks of width W, each
-/// from its own contacts, so any split into ranges gives the same bits.
+/// Reads contacts, manifolds, materials, masses, bodies and colouring; writes the blocks of width
+/// W, each from its own contacts, so any split into ranges gives the same bits.
 template <int D, int W>
 void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
@@ -165,7 +166,7 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
   out.colors.clear();
   int blocks = 0;
   for (const Range& color : coloring.colors) {
-    const int count = (color.end - color.begin + W - 1) / W;
+    const int count = (color.end - color.begin + kLaneCount<W> - 1) / kLaneCount<W>;
     out.colors.push_back({blocks, blocks + count});
     blocks += count;
   }
@@ -177,35 +178,41 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
     for (int i = members.begin; i < members.end; ++i)
       set_contact(context, state, scratch, coloring.order[static_cast<std::size_t>(i)],
                   i - members.begin, into);
-    tangents(into.normal, into.tangent);
-    set_effective_masses(Lanes<W>(1.0f), into);
   };
   for (std::size_t c = 0; c < out.colors.size(); ++c) {
     const Range color = out.colors[c];
     workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
       for (int i = range.begin; i < range.end; ++i)
-        fill(color.begin + i, contacts_of_block(coloring.colors[c], i, W));
+        fill(color.begin + i, contacts_of_block(coloring.colors[c], i, kLaneCount<W>));
     });
   }
   for (int i = out.overflow.begin; i < out.overflow.end; ++i)
     fill(i, contacts_of_block(coloring.overflow, i - out.overflow.begin, 1));
+  workers.parallel_for(out.overflow.end, kBlockGrain, [&](Range range) {
+    ContactKernels<D, W>::complete(context, block_range<D, W>(scratch, range));
+  });
+  out.follows = false;
+  out.bounces = false;
+  for (const ContactBlock<D, W>& block : out.blocks) {
+    out.follows = out.follows || block.follows;
+    out.bounces = out.bounces || block.bounces;
+  }
+  scratch.poses = 0;
 }
 
-template void prepare_contacts<2, 1>(const StepContext<2>&, const WorldState<2>&, Workers&,
-                                     StepScratch<2>&);
-template void prepare_contacts<2, 4>(const StepContext<2>&, const WorldState<2>&, Workers&,
-                                     StepScratch<2>&);
-template void prepare_contacts<2, 8>(const StepContext<2>&, const WorldState<2>&, Workers&,
-                                     StepScratch<2>&);
-template void prepare_contacts<2, 16>(const StepContext<2>&, const WorldState<2>&, Workers&,
-                                      StepScratch<2>&);
-template void prepare_contacts<3, 1>(const StepContext<3>&, const WorldState<3>&, Workers&,
-                                     StepScratch<3>&);
-template void prepare_contacts<3, 4>(const StepContext<3>&, const WorldState<3>&, Workers&,
-                                     StepScratch<3>&);
-template void prepare_contacts<3, 8>(const StepContext<3>&, const WorldState<3>&, Workers&,
-                                     StepScratch<3>&);
-template void prepare_contacts<3, 16>(const StepContext<3>&, const WorldState<3>&, Workers&,
-                                      StepScratch<3>&);
+template <int D, int W>
+struct InstantiatePrepare {
+  static constexpr auto kPrepare = &prepare_contacts<D, W>;
+};
+template struct InstantiatePrepare<2, 1>;
+template struct InstantiatePrepare<2, 4>;
+template struct InstantiatePrepare<2, 8>;
+template struct InstantiatePrepare<2, 16>;
+template struct InstantiatePrepare<2, kAvx2Lanes>;
+template struct InstantiatePrepare<3, 1>;
+template struct InstantiatePrepare<3, 4>;
+template struct InstantiatePrepare<3, 8>;
+template struct InstantiatePrepare<3, 16>;
+template struct InstantiatePrepare<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

@@ -1,4 +1,3 @@
-#include "solver/constraints/contact_position.hpp"
 #include "solver/constraints/joint_solve.hpp"
 #include "solver/stages/stages.hpp"
 
@@ -44,9 +43,9 @@ static void drive_joints(const StepContext<D>& context, StepScratch<D>& scratch)
 template <int D, int W>
 void project_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
                        Workers& workers, StepScratch<D>& scratch) {
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
-  integrate_velocities(context, state, workers, scratch);
+  integrate_velocities(context, workers, scratch);
   evaluate_contacts<D, W>(workers, scratch);
   bounce_contacts<D, W>(context, workers, scratch);
   evaluate_joints(state, time_s, workers, scratch);
@@ -63,14 +62,14 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
       correct_joint(context, row, a, b);
       write_back(row, a, b, motions);
     });
-    for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-      project_contact(context, contacts.blocks[static_cast<std::size_t>(i)],
-                      std::span<const Motion<D>>(scratch.saved_motions), motions);
+    for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
+      ContactKernels<D, W>::project(context, scratch.saved_motions.data(),
+                                    block_range<D, W>(scratch, range));
     });
   }
   take_velocities(context, state, scratch);
-  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-    rub_projected_contact(context, contacts.blocks[static_cast<std::size_t>(i)], motions);
+  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
+    ContactKernels<D, W>::rub(context, block_range<D, W>(scratch, range));
   });
 }
 
@@ -82,9 +81,11 @@ template struct InstantiateProject<2, 1>;
 template struct InstantiateProject<2, 4>;
 template struct InstantiateProject<2, 8>;
 template struct InstantiateProject<2, 16>;
+template struct InstantiateProject<2, kAvx2Lanes>;
 template struct InstantiateProject<3, 1>;
 template struct InstantiateProject<3, 4>;
 template struct InstantiateProject<3, 8>;
 template struct InstantiateProject<3, 16>;
+template struct InstantiateProject<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

@@ -1,4 +1,3 @@
-#include "solver/constraints/contact_together.hpp"
 #include "solver/constraints/joint_solve.hpp"
 #include "solver/stages/stages.hpp"
 
@@ -19,14 +18,14 @@ static void with_bodies(JointRow<D>& row, std::span<Motion<D>> motions, Act&& ac
 /// Reads the accumulated impulses; writes velocities. Colour after colour (for_each_by_color).
 template <int D, int W>
 void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
     with_bodies<D>(scratch.joint_rows[static_cast<std::size_t>(i)], motions,
                    [](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { warm_start(row, a, b); });
   });
-  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-    warm_start(contacts.blocks[static_cast<std::size_t>(i)], motions);
+  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
+    ContactKernels<D, W>::warm_start(block_range<D, W>(scratch, range));
   });
 }
 
@@ -38,7 +37,7 @@ void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
 template <int D, int W>
 void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& workers,
                        StepScratch<D>& scratch) {
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   solve_trees(context, sweep, scratch);
   for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
@@ -46,8 +45,8 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
         scratch.joint_rows[static_cast<std::size_t>(i)], motions,
         [&](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { solve(context, sweep, row, a, b); });
   });
-  for_each_by_color(contacts, workers, kBlockGrain, [&](int i) {
-    solve(context, sweep, contacts.blocks[static_cast<std::size_t>(i)], motions);
+  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
+    ContactKernels<D, W>::sweep(context, sweep, block_range<D, W>(scratch, range));
   });
 }
 
@@ -60,8 +59,8 @@ static float without_sign_of_zero(float impulse) {
 
 template <int D, int W>
 static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>& contacts) {
-  for (int lane = 0; lane < W; ++lane) {
-    const std::uint32_t index = block.contact[static_cast<std::size_t>(lane)];
+  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+    const std::uint32_t index = block.contact[lane];
     if (index == kNone) continue;
     Contact<D>& contact = contacts[index];
     for (std::uint32_t p = 0; p < contact.point_count; ++p) {
@@ -97,9 +96,11 @@ template struct Instantiate<2, 1>;
 template struct Instantiate<2, 4>;
 template struct Instantiate<2, 8>;
 template struct Instantiate<2, 16>;
+template struct Instantiate<2, kAvx2Lanes>;
 template struct Instantiate<3, 1>;
 template struct Instantiate<3, 4>;
 template struct Instantiate<3, 8>;
 template struct Instantiate<3, 16>;
+template struct Instantiate<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

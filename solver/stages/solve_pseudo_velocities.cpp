@@ -60,9 +60,11 @@ template struct InstantiatePseudo<2, 1>;
 template struct InstantiatePseudo<2, 4>;
 template struct InstantiatePseudo<2, 8>;
 template struct InstantiatePseudo<2, 16>;
+template struct InstantiatePseudo<2, kAvx2Lanes>;
 template struct InstantiatePseudo<3, 1>;
 template struct InstantiatePseudo<3, 4>;
 template struct InstantiatePseudo<3, 8>;
 template struct InstantiatePseudo<3, 16>;
+template struct InstantiatePseudo<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

@@ -5,7 +5,7 @@ namespace cycloid::solver {
 /// Rigid and unbounded equalities are the tree solver's; what yields stays with the sweeps.
 template <int D>
 static bool is_rigid(const JointRow<D>& row) {
-  return row.rows.count > 0 && !row.is_spring[0] && !row.is_spring[1];
+  return !row.in_island && row.rows.count > 0 && !row.is_spring[0] && !row.is_spring[1];
 }
 
 template <int D>
@@ -42,7 +42,8 @@ void factor_trees(const StepContext<D>& context, StepScratch<D>& scratch) {
   scratch.trees.analyse(scratch.tree_blocks, scratch.masses);
   scratch.trees.factor(scratch.tree_blocks, scratch.masses);
   for (std::size_t i = 0; i < scratch.joint_rows.size(); ++i)
-    scratch.joint_rows[i].solved_directly = scratch.trees.in_tree(static_cast<int>(i));
+    scratch.joint_rows[i].solved_directly =
+        scratch.joint_rows[i].in_island || scratch.trees.in_tree(static_cast<int>(i));
 }
 
 /// Every joint of every tree in one solve: lambda += A^-1 (-(Jv + bias C)), exact at any mass
@@ -61,7 +62,7 @@ void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scr
   scratch.tree_impulses.resize(scratch.tree_wanted.size());
   for (std::size_t i = 0; i < scratch.joint_rows.size(); ++i) {
     const JointRow<D>& row = scratch.joint_rows[i];
-    if (!row.solved_directly) continue;
+    if (!row.solved_directly || row.in_island) continue;
     for (int r = 0; r < row.rows.count; ++r) {
       const Row<D>& equality = row.rows.rows[static_cast<std::size_t>(r)];
       scratch.tree_wanted[i * kRows + static_cast<std::size_t>(r)] =
@@ -72,7 +73,7 @@ void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scr
   scratch.trees.solve(scratch.tree_wanted, scratch.tree_impulses);
   for (std::size_t i = 0; i < scratch.joint_rows.size(); ++i) {
     JointRow<D>& row = scratch.joint_rows[i];
-    if (!row.solved_directly) continue;
+    if (!row.solved_directly || row.in_island) continue;
     for (int r = 0; r < row.rows.count; ++r)
       row.impulse[r] += scratch.tree_impulses[i * kRows + static_cast<std::size_t>(r)];
   }

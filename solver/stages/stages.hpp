@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/constraints/contact_kernels.hpp"
 #include "solver/step_context.hpp"
 #include "solver/step_scratch.hpp"
 
@@ -20,7 +21,8 @@ void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch);
 template <int D>
-void prepare_bodies(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch);
+void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                    StepScratch<D>& scratch);
 template <int D>
 void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
                     StepScratch<D>& scratch);
@@ -29,8 +31,7 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch);
 
 template <int D>
-void integrate_velocities(const StepContext<D>& context, const WorldState<D>& state,
-                          Workers& workers, StepScratch<D>& scratch);
+void integrate_velocities(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
 void evaluate_contacts(Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
@@ -42,6 +43,12 @@ template <int D>
 void factor_trees(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D>
 void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scratch);
+template <int D, int W>
+void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch);
+template <int D, int W>
+void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch);
+template <int D>
+void correct_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>
 void warm_start_constraints(Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
@@ -72,8 +79,7 @@ Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch);
 template <int D>
 void finalize(StepScratch<D>& scratch, WorldState<D>& state);
 template <int D>
-void rest_islands(const StepContext<D>& context, const StepScratch<D>& scratch,
-                  WorldState<D>& state);
+void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state);
 
 /// Ranges of this many bodies, pairs or blocks go to one thread at a time.
 inline constexpr int kBodyGrain = 256;
@@ -81,16 +87,32 @@ inline constexpr int kPairGrain = 64;
 inline constexpr int kBlockGrain = 16;
 inline constexpr int kJointGrain = 32;
 
+/// Runs `run(range)` for ranges of every colour in order, those of one colour in parallel, and for
+/// the overflow one by one: `for_each_by_color` for whole ranges.
+template <class Colors, class Run>
+void for_each_range_by_color(const Colors& colors, Workers& workers, int grain, Run&& run) {
+  for (const Range& color : colors.colors)
+    workers.parallel_for(color.end - color.begin, grain, [&](Range range) {
+      run(Range{color.begin + range.begin, color.begin + range.end});
+    });
+  for (int i = colors.overflow.begin; i < colors.overflow.end; ++i) run(Range{i, i + 1});
+}
+
 /// Runs `run(index)` for every constraint, colour after colour; inside a colour in parallel, the
 /// overflow one by one. The one place that knows why lanes and threads cannot change a bit: what
 /// runs at the same time shares no body that moves.
 template <class Colors, class Run>
 void for_each_by_color(const Colors& colors, Workers& workers, int grain, Run&& run) {
-  for (const Range& color : colors.colors)
-    workers.parallel_for(color.end - color.begin, grain, [&](Range range) {
-      for (int i = color.begin + range.begin; i < color.begin + range.end; ++i) run(i);
-    });
-  for (int i = colors.overflow.begin; i < colors.overflow.end; ++i) run(i);
+  for_each_range_by_color(colors, workers, grain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) run(i);
+  });
+}
+
+/// What a kernel of contacts works on. @pre the blocks of the range share no body that moves.
+template <int D, int W>
+BlockRange<D, W> block_range(StepScratch<D>& scratch, Range range) {
+  ContactBlock<D, W>* blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks.data();
+  return {blocks + range.begin, blocks + range.end, scratch.motions.data(), scratch.poses};
 }
 
 }  // namespace cycloid::solver

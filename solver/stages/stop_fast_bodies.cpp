@@ -18,12 +18,42 @@ static BodySweep<D> sweep_of(const StepContext<D>& context, const WorldState<D>&
           winds ? spun : turn_of(motion.delta_rotation)};
 }
 
+/// The most that a rotation may turn, rad, or more: without a function of trigonometry.
+static float turn_bound(const Rotation<2>& q) {
+  return q[0] >= 0.0f ? 1.6f * abs(q[1]) + 1.0e-5f : 2.0f * kPi;
+}
+static float turn_bound(const Rotation<3>& q) {
+  return q[3] >= 0.0f ? 3.2f * length(Vec<3>{{q[0], q[1], q[2]}}) + 1.0e-5f : 2.0f * kPi;
+}
+
+/// Whether it moves so little in a tick that `is_fast` is false. Most do, and to be sure of it is
+/// cheaper than its way.
+template <int D>
+static bool is_slow(const StepContext<D>& context, const Body<D>& body, const Motion<D>& motion) {
+  const Spin<D> spun = context.tick_s * motion.spin;
+  if (dot(spun, spun) > 9.0f) return false;
+  const float way = length(motion.delta_position) + body.extent * turn_bound(motion.delta_rotation);
+  return 1.001f * way < 0.5f * body.thickness;
+}
+
 /// Whether it moves so far in a tick that it could pass through something, or over its corner.
 template <int D>
 static bool is_fast(const Body<D>& body, const BodySweep<D>& sweep) {
   if (!responds(body.kind) || body.extent == 0.0f) return false;
   const float way = length(sweep.translation) + body.extent * length(sweep.turn);
   return way > 0.5f * body.thickness;
+}
+
+/// Whether two bodies stay farther apart than their reach, which decides most pairs that are near
+/// and do not meet: then no shape of one meets any of the other.
+template <int D>
+static bool stays_clear(const BodySweep<D>& a, const BodySweep<D>& b, float reach) {
+  const Vec<D> from = b.start.position - a.start.position;
+  const Vec<D> way = b.translation - a.translation;
+  const float square = dot(way, way);
+  const float fraction = square > 0.0f ? clamp(-dot(from, way) / square, 0.0f, 1.0f) : 0.0f;
+  const Vec<D> nearest = from + fraction * way;
+  return dot(nearest, nearest) > reach * reach;
 }
 
 /// The fraction of the tick at which one shape meets another that it did not touch at the start.
@@ -36,9 +66,13 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
   // Near enough that the next tick finds the contact, far enough that this one did not touch.
   const float target = min(max(0.5f * context.tuning.slop, 1.0e-4f),
                            max(context.tuning.speculative_distance, 1.0e-4f));
+  const Shape<D>& b = state.shapes[shape];
+  const BodySweep<D> other_sweep = sweep_of(context, state, scratch, a.body);
+  // A hundredth more than what counts as a touch covers all rounding.
+  const float reach = 1.01f * (state.bodies[a.body].extent + state.bodies[b.body].extent + target);
+  if (a.vertex_count > 0 && stays_clear(other_sweep, sweep, reach + target)) return 1.0f;
   const Impact impact =
-      time_of_impact(a, sweep_of(context, state, scratch, a.body), state.shapes[shape], sweep,
-                     target, 0.25f * target, state.polyhedra);
+      time_of_impact(a, other_sweep, b, sweep, target, 0.25f * target, state.polyhedra);
   return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
 }
 
@@ -58,7 +92,9 @@ static float earliest_impact(const StepContext<D>& context, const WorldState<D>&
     };
     for (const std::uint32_t half_space : scratch.unbounded) meet(half_space);
     scratch.static_tree.query(bounds, [&](int rank) { meet(scratch.static_tree.leaf(rank).id); });
-    scratch.tree.query(bounds, [&](int rank) { meet(scratch.tree.leaf(rank).id); });
+    scratch.pair_cache.fat.query(bounds, [&](std::uint32_t other) {
+      if (overlaps(scratch.pair_cache.boxes[other], bounds)) meet(other);
+    });
   }
   return first;
 }
@@ -67,8 +103,9 @@ static float earliest_impact(const StepContext<D>& context, const WorldState<D>&
 /// before. Its velocity stays; the contact of the next tick answers to it. The rest of its way is
 /// lost.
 ///
-/// Reads motions, shapes and the tree; writes first the stop of each body, from the ways of all as
-/// the sweeps left them, then the deltas. So any split into ranges gives the same bits.
+/// Reads motions, shapes, the tree and the boxes of find_pairs; writes first the stop of each body,
+/// from the ways of all as the sweeps left them, then the deltas. So any split into ranges gives
+/// the same bits.
 template <int D>
 void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
@@ -77,7 +114,7 @@ void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
   workers.parallel_for(static_cast<int>(state.bodies.size()), kPairGrain, [&](Range range) {
     for (auto i = static_cast<std::uint32_t>(range.begin);
          i < static_cast<std::uint32_t>(range.end); ++i) {
-      if (scratch.awake[i] == 0) continue;
+      if (scratch.awake[i] == 0 || is_slow(context, state.bodies[i], scratch.motions[i])) continue;
       const BodySweep<D> sweep = sweep_of(context, state, scratch, i);
       if (is_fast(state.bodies[i], sweep))
         scratch.stops[i] = earliest_impact(context, state, scratch, i, sweep);

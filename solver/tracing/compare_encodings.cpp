@@ -67,8 +67,8 @@ class Comparison {
     });
   }
 
-  template <class R>
-  void array(const char* kind, const std::vector<R>& a, const std::vector<R>& b) {
+  template <class Array>
+  void array(const char* kind, const Array& a, const Array& b) {
     const std::size_t common = std::min(a.size(), b.size());
     for (std::size_t i = 0; i < common; ++i) records(kind, i, a[i], b[i]);
     for (std::size_t i = common; i < a.size(); ++i) only(kind, i, a_, a[i]);
@@ -118,8 +118,7 @@ class Comparison {
       if (compared_.first.size() >= limit_) return;
       compared_.first.push_back({kind, static_cast<std::uint32_t>(slot), generation_of(a),
                                  about(a_, a), named_a[place].name, named_a[place].text,
-                                 named_b[place].text,
-                                 named_a[place].bits, named_b[place].bits});
+                                 named_b[place].text, named_a[place].bits, named_b[place].bits});
     }
   }
 

@@ -1,3 +1,4 @@
+#include "solver/step_memory.hpp"
 #include "solver/tracing/digest_writer.hpp"
 #include "solver/tracing/named_words.hpp"
 #include "solver/tracing/tracer.hpp"
@@ -178,6 +179,8 @@ static void write_phase(Phase phase, const WorldState<D>& state, const StepScrat
 template <int D>
 void observe(const TracePoint& at, const WorldState<D>& state, const StepScratch<D>& scratch,
              ReadBlocks<D> read) {
+  if (scratch.trace->listener != nullptr)
+    return scratch.trace->listener(scratch.trace->listener_user, at);
   PhaseWriter writer(at, *scratch.trace);
   write_phase(at.phase, state, scratch, read, writer);
   writer.finish();
@@ -185,9 +188,9 @@ void observe(const TracePoint& at, const WorldState<D>& state, const StepScratch
 
 template <int D>
 Error World<D>::step_traced(StepTrace& trace) {
-  scratch_->trace = &trace;
+  kept_->trace = &trace;
   const Error error = step();
-  scratch_->trace = nullptr;
+  kept_->trace = nullptr;
   return error;
 }
 

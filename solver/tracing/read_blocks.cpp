@@ -34,8 +34,8 @@ static PointWork<D> point_of(const typename ContactBlock<D, W>::Point& point, in
 template <int D, int W>
 static ContactWork<D> contact_of(const ContactBlock<D, W>& block, int lane, std::uint32_t points) {
   ContactWork<D> work{};
-  work.body_a = block.body_a[static_cast<std::size_t>(lane)];
-  work.body_b = block.body_b[static_cast<std::size_t>(lane)];
+  work.body_a = block.body_a[lane];
+  work.body_b = block.body_b[lane];
   work.normal = lane_of(block.normal, lane);
   for (std::size_t t = 0; t < work.tangent.size(); ++t)
     work.tangent[t] = lane_of(block.tangent[t], lane);
@@ -56,8 +56,8 @@ template <int D, int W>
 void read_blocks(const StepScratch<D>& scratch, std::vector<ContactWork<D>>& contacts) {
   for (const ContactBlock<D, W>& block :
        std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks) {
-    for (int lane = 0; lane < W; ++lane) {
-      const std::uint32_t index = block.contact[static_cast<std::size_t>(lane)];
+    for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+      const std::uint32_t index = block.contact[lane];
       if (index == kNone) continue;
       contacts[index] = contact_of(block, lane, scratch.contacts[index].point_count);
     }
@@ -72,9 +72,11 @@ template struct InstantiateRead<2, 1>;
 template struct InstantiateRead<2, 4>;
 template struct InstantiateRead<2, 8>;
 template struct InstantiateRead<2, 16>;
+template struct InstantiateRead<2, kAvx2Lanes>;
 template struct InstantiateRead<3, 1>;
 template struct InstantiateRead<3, 4>;
 template struct InstantiateRead<3, 8>;
 template struct InstantiateRead<3, 16>;
+template struct InstantiateRead<3, kAvx2Lanes>;
 
 }  // namespace cycloid::solver

@@ -22,7 +22,7 @@ template <int D>
 struct Tracer {
   const WorldState<D>& state;
   const StepScratch<D>& scratch;
-  ReadBlocks<D> read = nullptr;  ///< Needed from kPrepare to kRelax.
+  ReadBlocks<D> read = nullptr;  ///< Needed from kPrepare to kStop.
   std::uint32_t substep = kNone;
 
   void operator()(Phase phase, std::uint32_t sweep = kNone) const {

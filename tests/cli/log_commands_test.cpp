@@ -1,8 +1,13 @@
+#include <fcntl.h>
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/stat.h>
+#include <unistd.h>
 
+#include <chrono>
 #include <random>
 #include <sstream>
+#include <thread>
 
 #include "tests/cli/logs.hpp"
 #include "tests/cli/program.hpp"
@@ -82,6 +87,9 @@ TEST_F(LogCommand, ACutIsALogOfItsOwn) {
     EXPECT_EQ(replay.json()["ticks"], to - from);
     EXPECT_EQ(replay.json()["digest"], digest(to));
     EXPECT_EQ(run_program({"verify", cut}).exit, 0);
+    const std::string again = folder_.file("again.cylog");
+    EXPECT_EQ(run_program({"cut", cut, "-o", again}).exit, 0) << "from where it begins";
+    EXPECT_EQ(summary_of(again).header.branch_tick, from);
   }
   EXPECT_EQ(run_program({"cut", log_, "--from", "9", "--to", "8", "-o", cut}).exit, 2);
   EXPECT_EQ(run_program({"cut", log_, "--to", "121", "-o", cut}).exit, 2);
@@ -112,6 +120,8 @@ TEST_F(LogCommand, CutsAreTracedComparedAndBisectedByTheirOwnTicks) {
   EXPECT_EQ(run_program({"diff", a, b}).out, "equal for 20 ticks\n");
   EXPECT_EQ(run_program({"bisect", a, b}).out, "equal for 20 ticks\n");
   EXPECT_EQ(run_program({"bisect", a, "--against", CYCLOID_PROGRAM}).out, "equal for 20 ticks\n");
+  EXPECT_EQ(run_program({"bisect", a, "--against", CYCLOID_PROGRAM, "--ticks", "10"}).out,
+            "equal for 10 ticks\n");
   EXPECT_EQ(run_program({"bisect", a, log_}).exit, 2);
   EXPECT_THAT(run_program({"diff", a, log_}).out, HasSubstr("begins after tick 50"));
 }
@@ -173,6 +183,8 @@ TEST_F(LogCommand, SalvageKeepsThePrefixAndSaysWhatIsLost) {
     const Ran taken = run_program(command);
     EXPECT_EQ(taken.exit, 0) << command[0] << taken.out << taken.err;
   }
+  const Ran against = run_program({"bisect", log_, "--against", CYCLOID_PROGRAM, "--salvage"});
+  EXPECT_EQ(against.out, "equal for 60 ticks\n") << against.err;
   const Ran verify = run_program({"verify", log_, "--salvage"});
   EXPECT_THAT(verify.out, HasSubstr("salvaged after 60 good ticks: a damaged record at byte "));
   EXPECT_THAT(verify.out, HasSubstr(" are lost"));
@@ -190,6 +202,57 @@ TEST_F(LogCommand, ATornTailIsDroppedWithItsBytesNamed) {
   EXPECT_THAT(ran.out, HasSubstr("the 50 bytes behind byte " +
                                  std::to_string(whole.keyframes[3].at) + " are lost"));
   EXPECT_EQ(run_program({"verify", log_, "--salvage"}).exit, 0);
+  const std::string out = folder_.file("out.cylog");
+  for (const auto& command : std::vector<std::vector<std::string>>{
+           {"replay", log_}, {"info", log_}, {"export", log_}, {"cut", log_, "-o", out}}) {
+    EXPECT_EQ(run_program(command).exit, 3) << command[0];
+  }
+  EXPECT_EQ(run_program({"verify", out}).exit, 0) << "and all that is good was written";
+}
+
+/// What is asked for is to take a damaged log, not one whose writer was killed.
+TEST_F(LogCommand, SalvageSaysNothingOfALogThatIsOpen) {
+  rewrite_log(log_, log_, [](protocol::Log& log) { log.footer.reset(); });
+  EXPECT_EQ(run_program({"verify", log_, "--salvage"}).exit, 3);
+  EXPECT_EQ(run_program({"verify", log_, "--allow-open"}).exit, 0);
+}
+
+/// The state that it goes on from is lost: another world would be stepped, and nothing be found.
+TEST_F(LogCommand, ABranchWithoutItsStateIsNoMatch) {
+  const std::string cut = folder_.file("cut.cylog");
+  ASSERT_EQ(run_program({"cut", log_, "--from", "47", "--to", "63", "-o", cut}).exit, 0);
+  const protocol::LogSummary log = summary_of(cut);
+  write_text(cut, read_text(cut).substr(0, log.start.header_bytes));
+  const std::string out = folder_.file("out.cylog");
+  const std::vector<std::vector<std::string>> commands = {
+      {"replay", cut}, {"trace", cut}, {"diff", cut, cut}, {"cut", cut, "-o", out}};
+  for (std::vector<std::string> command : commands) {
+    for (const char* salvage : {"", "--salvage"}) {
+      if (*salvage != '\0') command.push_back(salvage);
+      const Ran ran = run_program(command);
+      EXPECT_EQ(ran.exit, 3) << command[0] << salvage;
+      EXPECT_THAT(ran.err, HasSubstr("no keyframe of tick 47")) << command[0];
+    }
+  }
+  EXPECT_EQ(run_program({"verify", cut, "--allow-open"}).exit, 3);
+  EXPECT_EQ(run_program({"info", cut}).exit, 3);
+}
+
+/// A header of 200 bytes must not have memory, nor time, in proportion to what it claims.
+TEST_F(LogCommand, ATickThatNoMatchComesToIsRefused) {
+  std::string text = read_text(log_);
+  protocol::LogHeader header = protocol::scan_log(std::as_bytes(std::span(text))).header;
+  for (const std::uint64_t tick : {std::uint64_t{1} << 40, ~std::uint64_t{0}}) {
+    header.branch_tick = tick;
+    protocol::Bytes bytes;
+    protocol::append_log_header(header, bytes);
+    write_text(log_, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+    for (const char* command : {"trace", "export", "replay", "info"}) {
+      const Ran ran = run_program({command, log_});
+      EXPECT_EQ(ran.exit, 3) << command << ' ' << tick;
+      EXPECT_LT(ran.out.size(), 2000u) << command;
+    }
+  }
 }
 
 TEST_F(LogCommand, AKeyframeThatIsNotTheStateIsADivergence) {
@@ -223,15 +286,33 @@ TEST_F(LogCommand, TheFirstFormatIsRefusedWithBothNumbers) {
 }
 
 TEST_F(LogCommand, OutOfTimeIsItsOwnExitCode) {
-  const std::string slow = folder_.file("slow.cylog");
-  ASSERT_EQ(run_program({"run", "cubes-901", "--ticks", "40", "--log", slow}).exit, 0);
   const std::string junit = folder_.file("logs.xml");
-  const Ran ran = run_program({"verify", slow, "--timeout", "0.05", "--junit", junit, "--json"});
+  const Ran ran =
+      run_program({"verify", log_, "--timeout", "0.000000001", "--junit", junit, "--json"});
   EXPECT_EQ(ran.exit, 124) << ran.out;
   EXPECT_THAT(ran.out, HasSubstr("out of time"));
   EXPECT_THAT(read_text(junit), HasSubstr("failure type=\"timeout\""));
+}
+
+/// One log diverges at once; the other is a pipe that says nothing until the time is over.
+TEST_F(LogCommand, ADivergenceIsWorseThanRunningOutOfTime) {
+  const std::string good = read_text(log_);
   rewrite_log(log_, log_, [](protocol::Log& log) { log.ticks[0].digest ^= 1; });
-  EXPECT_EQ(run_program({"verify", log_, slow, "--timeout", "0.2"}).exit, 1) << "that is worse";
+  const std::string pipe = folder_.file("slow.cylog");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  Background verify({"verify", log_, pipe, "--timeout", "3", "--json"});
+  int reader_is_there = -1;  // Once the verdict on the first is made.
+  for (int wait = 0; wait < 1000 && reader_is_there < 0; ++wait) {
+    std::this_thread::sleep_for(std::chrono::milliseconds(10));
+    reader_is_there = ::open(pipe.c_str(), O_WRONLY | O_NONBLOCK | O_CLOEXEC);
+  }
+  ASSERT_GE(reader_is_there, 0);
+  std::this_thread::sleep_for(std::chrono::seconds(3));
+  write_text(pipe, good);
+  ::close(reader_is_there);
+  const Ran ran = verify.wait();
+  EXPECT_EQ(ran.exit, 1) << ran.out;
+  EXPECT_THAT(ran.out, HasSubstr("out of time at tick 16 of 120"));
 }
 
 }  // namespace

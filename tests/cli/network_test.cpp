@@ -30,7 +30,7 @@ TEST(Demo, OfScenesOfSpaceAgreesToo) {
   const Folder folder;
   for (const char* scene : {"vehicle-3d", "character-course-3d"}) {
     const std::string log = folder.file(std::string(scene) + ".cylog");
-    const Ran ran = run_program({"demo", scene, "--seconds", "1", "--log", log, "--json"});
+    const Ran ran = run_program({"demo", scene, "--seconds", "2", "--log", log, "--json"});
     ASSERT_EQ(ran.exit, 0) << scene << ": " << ran.err;
     EXPECT_EQ(run_program({"verify", log}).exit, 0) << scene;
   }
@@ -40,7 +40,7 @@ TEST(Demo, ReplacesAnOlderLogAndNothingElse) {
   const Folder folder;
   const std::string file = folder.file("demo.cylog");
   run_program({"run", "half-pipe", "--ticks", "1", "--log", file});
-  const Ran text = run_program({"demo", "half-pipe", "--seconds", "0.5", "--log", file});
+  const Ran text = run_program({"demo", "half-pipe", "--seconds", "2", "--log", file});
   EXPECT_EQ(text.exit, 0) << text.err << text.out;
   EXPECT_THAT(text.out, HasSubstr("all equal\n"));
   write_text(file, "a letter");

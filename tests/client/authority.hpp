@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <utility>
 #include <vector>
 
@@ -52,6 +53,23 @@ class Authority {
   const scenes::Scene& scene_;
   scenes::Simulation simulation_;
 };
+
+/// The state as the server sends it: in parts of at most `bytes_max` bytes.
+inline std::vector<protocol::SnapshotPart> parts_of(const protocol::Snapshot& state,
+                                                    std::size_t bytes_max = 16384) {
+  std::vector<protocol::SnapshotPart> parts;
+  for (std::size_t at = 0; at < state.state.size(); at += bytes_max) {
+    protocol::SnapshotPart& part = parts.emplace_back();
+    part.tick = state.tick;
+    part.digest = state.digest;
+    part.total_bytes = static_cast<std::uint32_t>(state.state.size());
+    part.offset = static_cast<std::uint32_t>(at);
+    const std::size_t end = std::min(at + bytes_max, state.state.size());
+    part.bytes.assign(state.state.begin() + static_cast<std::ptrdiff_t>(at),
+                      state.state.begin() + static_cast<std::ptrdiff_t>(end));
+  }
+  return parts;
+}
 
 /// Pushes one free body, as a fault in memory or in a compiler would.
 inline void disturb(scenes::Simulation& simulation) {

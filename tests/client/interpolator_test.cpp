@@ -106,6 +106,13 @@ TEST(Interpolation, ARewindReplacesWhatWasLater) {
   EXPECT_NEAR(states.at(10.5)[0].position[0], -0.5f, 1e-6);
 }
 
+TEST(Interpolation, AtNoNumberShowsTheNewestState) {
+  const Interpolator states = with({{10, {pose(0, 0.0f)}}, {11, {pose(0, 1.0f)}}});
+  const auto poses = states.at(std::nan(""));
+  ASSERT_EQ(poses.size(), 1u);
+  EXPECT_EQ(poses[0].position[0], 1.0f);
+}
+
 TEST(Interpolation, KeepsABoundedNumberOfStates) {
   Interpolator states;
   for (std::uint64_t tick = 0; tick < 1000; ++tick)

@@ -108,6 +108,23 @@ TEST(Lead, ChangesEverMoreRarelyWhereJitterNeverEnds) {
   EXPECT_LE(lead.changes() - early_changes, 60u) << "in 5 minutes";
 }
 
+TEST(Lead, RaisesThatNoLoweringLedToDoNotLengthenTheWatch) {
+  LeadController lead;
+  lead.start(0, 1);
+  std::uint64_t tick = 0;
+  for (int i = 0; i < 10; ++i) {
+    tick += 50;
+    lead.take({tick, 0, 1, 0}, tick + lead.lead_ticks());
+  }
+  const std::uint32_t raised = lead.lead_ticks();
+  ASSERT_EQ(raised, 11u) << "by 2 at every second margin";
+  const std::uint64_t begin = tick;
+  while (lead.lead_ticks() == raised && tick < begin + 1000)
+    lead.take({++tick, 10, 1, 0}, tick + raised);
+  EXPECT_LE(tick - begin, LeadController::kWatchTicksMin + raised + 4);
+  EXPECT_EQ(lead.lead_ticks(), 3u);
+}
+
 TEST(Lead, MarginsOfInputsSentBeforeAChangeAreNotHeard) {
   LeadController lead;
   lead.start(0, 2);

@@ -1,30 +1,10 @@
 #include <gtest/gtest.h>
 
 #include "client/replica/replica.hpp"
-#include "client/replica/thin.hpp"
-#include "protocol/state/exact_delta.hpp"
-#include "protocol/state/quantised_delta.hpp"
 #include "tests/client/fed.hpp"
 
 namespace cycloid::client {
 namespace {
-
-/// The state as the server sends it: in parts of at most `bytes_max` bytes.
-std::vector<protocol::SnapshotPart> parts_of(const protocol::Snapshot& state,
-                                             std::size_t bytes_max = 16384) {
-  std::vector<protocol::SnapshotPart> parts;
-  for (std::size_t at = 0; at < state.state.size(); at += bytes_max) {
-    protocol::SnapshotPart& part = parts.emplace_back();
-    part.tick = state.tick;
-    part.digest = state.digest;
-    part.total_bytes = static_cast<std::uint32_t>(state.state.size());
-    part.offset = static_cast<std::uint32_t>(at);
-    const std::size_t end = std::min(at + bytes_max, state.state.size());
-    part.bytes.assign(state.state.begin() + static_cast<std::ptrdiff_t>(at),
-                      state.state.begin() + static_cast<std::ptrdiff_t>(end));
-  }
-  return parts;
-}
 
 protocol::RoomNotice rewound_to(std::uint64_t tick) {
   protocol::RoomNotice notice;
@@ -34,7 +14,6 @@ protocol::RoomNotice rewound_to(std::uint64_t tick) {
 }
 
 using ReplicaParts = Fed<Replica>;
-using ThinStates = Fed<Thin>;
 
 TEST_F(ReplicaParts, FramesBetweenThePartsAreCaughtUpWithWhenTheStateIsWhole) {
   for (int i = 0; i < 40; ++i) authority_.frame();
@@ -78,6 +57,48 @@ TEST_F(ReplicaParts, AStateThatBeginsAgainReplacesTheOneBefore) {
   for (const protocol::SnapshotPart& part : parts_of(authority_.snapshot(), 4000)) feed(part);
   EXPECT_EQ(follower_.progress().first_tick, 5u);
   EXPECT_EQ(follower_.simulation().digest(), authority_.simulation().digest());
+}
+
+TEST_F(ReplicaParts, AStateThatTakesThePlaceOfDroppedFramesIsFollowedByThoseBehindIt) {
+  start();
+  for (int i = 0; i < 3; ++i) feed(authority_.frame());
+  for (int i = 0; i < 5; ++i) authority_.frame();  // The server has dropped them.
+  const auto parts = parts_of(authority_.snapshot(), 4000);
+  ASSERT_GT(parts.size(), 4u);
+  for (const protocol::SnapshotPart& part : parts) {
+    feed(part);
+    if (part.offset == 4000 || part.offset == 8000) feed(authority_.frame());
+  }
+  ASSERT_EQ(follower_.progress().phase, Phase::kRunning) << follower_.progress().reason;
+  EXPECT_EQ(follower_.progress().last_tick, 10u);
+  EXPECT_EQ(follower_.progress().frames, 5u);
+  EXPECT_EQ(follower_.digest(), authority_.simulation().digest());
+  feed(authority_.frame());
+  EXPECT_EQ(follower_.digest(), authority_.simulation().digest());
+}
+
+TEST_F(ReplicaParts, AJoinWhoseStateIsBegunAnewGoesOnFromTheNewOne) {
+  feed(authority_.welcome(0));
+  feed(parts_of(authority_.snapshot(), 4000).front());
+  feed(authority_.frame());
+  for (int i = 0; i < 5; ++i) authority_.frame();
+  for (const protocol::SnapshotPart& part : parts_of(authority_.snapshot(), 4000)) {
+    feed(part);
+    if (part.offset == 4000) feed(authority_.frame());
+  }
+  ASSERT_EQ(follower_.progress().phase, Phase::kRunning) << follower_.progress().reason;
+  EXPECT_EQ(follower_.progress().first_tick, 6u);
+  EXPECT_EQ(follower_.progress().last_tick, 7u);
+  EXPECT_EQ(follower_.digest(), authority_.simulation().digest());
+}
+
+TEST_F(ReplicaParts, AGapThatTheStateOnItsWayDoesNotFillEndsTheSession) {
+  start();
+  for (int i = 0; i < 5; ++i) authority_.frame();
+  feed(parts_of(authority_.snapshot(), 4000).front());
+  authority_.frame();
+  feed(authority_.frame());
+  expect_failed("a gap: the frame of tick 7 instead of 1");
 }
 
 TEST_F(ReplicaParts, DivergedReplicaIsMendedWhileFramesGoOn) {
@@ -209,6 +230,41 @@ TEST_F(ReplicaParts, AnnouncedInputDelayHoldsFromItsFrameOn) {
   expect_failed("changes the input delay to 100000");
 }
 
+TEST_F(ReplicaParts, WhatMySeatHasSaidIsPredictedAlsoAfterAStateThatReplacedTheWorld) {
+  FollowerOptions predicting = options();
+  predicting.predict_ticks = 8;
+  predicting.input = [](int, std::uint64_t tick) {
+    scenes::SeatInput input;
+    input.axes[0] = tick % 2 == 0 ? 20000 : -20000;
+    return input;
+  };
+  Replica follower(make(), predicting);
+  protocol::Welcome welcome = authority_.welcome(0);
+  welcome.input_delay_ticks = 6;
+  follower.receive(welcome, outbox_);
+  follower.receive(authority_.snapshot(), outbox_);
+  for (int i = 0; i < 20; ++i) follower.receive(authority_.frame(), outbox_);
+  follower.settle();
+  protocol::InputFrame newest;
+  for (const protocol::SnapshotPart& part : parts_of(authority_.snapshot(), 10000)) {
+    newest = authority_.frame();
+    follower.receive(newest, outbox_);
+    follower.receive(part, outbox_);
+  }
+  follower.settle();
+  ASSERT_EQ(follower.progress().phase, Phase::kRunning) << follower.progress().reason;
+  scenes::Simulation& right = authority_.simulation();
+  EXPECT_EQ(follower.digest(), right.digest());
+  while (right.tick() < newest.tick + 6) {
+    std::vector<scenes::SeatInput> inputs;
+    for (const protocol::SeatFrame& seat : newest.seats) inputs.push_back(seat.input);
+    inputs[0] = predicting.input(0, right.tick() + 1);
+    ASSERT_TRUE(right.step(inputs).ok());
+  }
+  EXPECT_EQ(follower.simulation().tick(), right.tick());
+  EXPECT_EQ(follower.simulation().digest(), right.digest());
+}
+
 /// Notes what it was told.
 struct Watching final : Witness {
   std::vector<std::uint64_t> ticks;
@@ -253,126 +309,6 @@ TEST_F(ReplicaParts, WitnessSeesConfirmedStatesOnlyWhateverIsPredicted) {
   EXPECT_EQ(all_of<protocol::TickDigests>(outbox_).size(), 1u);
   follower.receive(protocol::StateWanted{9}, outbox_);
   EXPECT_EQ(witness->wanted_tick, 9u);
-}
-
-/// A state as its tick alone, on a baseline or on none.
-struct CountingDecoder final : StateDecoder {
-  std::string decode(const protocol::StateDelta& delta, const DecodedState* baseline,
-                     DecodedState& into) override {
-    if (baseline != nullptr && baseline->tick != delta.baseline_tick) return "another baseline";
-    if (delta.bytes.empty()) return "empty";
-    into.quantised.bodies.resize(1);
-    into.quantised.bodies[0].position[0] = static_cast<std::int32_t>(delta.tick * 512);
-    return "";
-  }
-};
-
-protocol::StateDelta quantised(std::uint64_t tick, std::uint64_t baseline) {
-  return {tick, baseline, tick * 3, protocol::Profile::kQuantised, {std::byte{1}}};
-}
-
-TEST_F(ThinStates, ExactDeltasOnWhatWasAcknowledgedGiveTheStateToTheBit) {
-  start();
-  protocol::Snapshot before = authority_.snapshot();
-  std::size_t bytes = 0;
-  for (int i = 0; i < 20; ++i) {
-    for (int tick = 0; tick < 3; ++tick) authority_.frame();
-    const protocol::Snapshot now = authority_.snapshot();
-    protocol::StateDelta delta{now.tick, before.tick, now.digest, protocol::Profile::kExact, {}};
-    const bool from_nothing = before.tick == 0;
-    ASSERT_TRUE(protocol::encode_exact_delta(
-        from_nothing ? std::span<const std::byte>() : std::span<const std::byte>(before.state),
-        now.state, delta.bytes));
-    if (!from_nothing) bytes = std::max(bytes, delta.bytes.size());
-    feed(delta);
-    ASSERT_EQ(follower_.progress().phase, Phase::kRunning) << follower_.progress().reason;
-    EXPECT_EQ(follower_.digest(), authority_.simulation().digest());
-    before = now;
-  }
-  EXPECT_LT(bytes, before.state.size() / 2);
-  const auto acks = all_of<protocol::Ack>(outbox_);
-  ASSERT_EQ(acks.size(), 21u);
-  EXPECT_EQ(acks.back().tick, 60u);
-}
-
-TEST_F(ThinStates, QuantisedDeltasGoOnFromTheExactStateAndStayWithinTheGrid) {
-  FollowerOptions quantising = options();
-  quantising.profile = protocol::Profile::kQuantised;
-  Thin follower(make(), quantising);
-  for (int i = 0; i < 5; ++i) authority_.frame();
-  follower.receive(authority_.welcome(0), outbox_);
-  for (const auto& part : parts_of(authority_.snapshot())) follower.receive(part, outbox_);
-  protocol::HeldState held;
-  held.state = protocol::capture(authority_.simulation());
-  for (int i = 0; i < 20; ++i) {
-    const std::uint64_t baseline = authority_.simulation().tick();
-    authority_.frame();
-    const auto now = protocol::capture(authority_.simulation());
-    const auto delta = protocol::encode_quantised(&held, now, 1u << 20);
-    held = delta.held;
-    follower.receive(protocol::StateDelta{now.tick, baseline, protocol::digest_of(held.state),
-                                          protocol::Profile::kQuantised, delta.bytes},
-                     outbox_);
-    ASSERT_EQ(follower.progress().phase, Phase::kRunning) << follower.progress().reason;
-    const auto right = authority_.simulation().poses();
-    const auto shown = follower.poses();
-    ASSERT_EQ(shown.size(), right.size());
-    for (std::size_t body = 0; body < right.size(); ++body) {
-      EXPECT_EQ(shown[body].index, right[body].index);
-      for (std::size_t axis = 0; axis < 3; ++axis)
-        EXPECT_NEAR(shown[body].position[axis], right[body].position[axis], 0.001);
-    }
-  }
-  EXPECT_EQ(follower.progress().last_tick, 25u);
-}
-
-TEST_F(ThinStates, AreAlsoTakenInParts) {
-  feed(authority_.welcome(0));
-  for (const auto& part : parts_of(authority_.snapshot(), 5000)) feed(part);
-  EXPECT_EQ(follower_.progress().phase, Phase::kRunning);
-  EXPECT_EQ(all_of<protocol::Ack>(outbox_).size(), 1u);
-}
-
-TEST_F(ThinStates, DeltaOfABaselineThatIsNotHeldIsDroppedAndNotAcknowledged) {
-  FollowerOptions decoding = options();
-  decoding.decoder = std::make_shared<CountingDecoder>();
-  Thin follower(make(), decoding);
-  follower.receive(authority_.welcome(0), outbox_);
-  follower.receive(quantised(1, 0), outbox_);
-  follower.receive(quantised(4, 1), outbox_);
-  follower.receive(quantised(7, 3), outbox_);
-  EXPECT_EQ(follower.progress().deltas_dropped, 1u);
-  EXPECT_EQ(follower.progress().last_tick, 4u);
-  EXPECT_EQ(follower.digest(), 12u);
-  EXPECT_EQ(follower.poses().at(0).position[0], 4.0f);
-  EXPECT_EQ(all_of<protocol::Ack>(outbox_).size(), 2u);
-  follower.receive(quantised(8, 4), outbox_);
-  EXPECT_EQ(follower.baselines(), 2u) << "what is older than the server's baseline is let go";
-  for (std::uint64_t tick = 9; tick < 300; ++tick) follower.receive(quantised(tick, 4), outbox_);
-  EXPECT_EQ(follower.baselines(), Thin::kBaselinesMax);
-  EXPECT_EQ(follower.progress().last_tick, 299u);
-  follower.receive(quantised(200, 4), outbox_);
-  EXPECT_EQ(follower.progress().phase, Phase::kFailed) << "older than what is held";
-}
-
-TEST_F(ThinStates, CorruptDeltasEndTheSession) {
-  const protocol::Snapshot state = authority_.snapshot();
-  protocol::StateDelta good{0, 0, state.digest, protocol::Profile::kExact, {}};
-  ASSERT_TRUE(protocol::encode_exact_delta({}, state.state, good.bytes));
-  protocol::StateDelta torn = good;
-  torn.bytes.resize(torn.bytes.size() / 2);
-  protocol::StateDelta other_tick = good;
-  other_tick.tick = 1;
-  protocol::StateDelta lying = quantised(1, 0);
-  lying.bytes =
-      protocol::encode_quantised(nullptr, protocol::capture(authority_.simulation()), 4096).bytes;
-  for (const protocol::StateDelta& wrong : {torn, other_tick, lying, quantised(1, 0)}) {
-    Thin follower(make(), options());
-    follower.receive(authority_.welcome(0), outbox_);
-    follower.receive(wrong, outbox_);
-    EXPECT_EQ(follower.progress().phase, Phase::kFailed);
-    EXPECT_NE(follower.progress().reason, "");
-  }
 }
 
 }  // namespace

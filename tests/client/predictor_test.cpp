@@ -143,13 +143,38 @@ TEST_F(PredictorTest, ResetToAnEarlierTickForgetsWhatWasSaidAfterIt) {
   std::vector<std::byte> bytes;
   start.encode(bytes);
   ASSERT_TRUE(simulation_.decode(bytes).ok());
-  predictor_.reset();
+  predictor_.reset(true);
   predictor_.settle();
   EXPECT_EQ(predictor_.confirmed_tick(), 0u);
   EXPECT_EQ(predictor_.predicted_tick(), 0u);
   ASSERT_TRUE(predictor_.confirm(Inputs(2)).ok());
   ASSERT_TRUE(start.step(Inputs(2)).ok());
   EXPECT_EQ(simulation_.digest(), start.digest());
+}
+
+TEST_F(PredictorTest, AMatchThatGoesBackToTheConfirmedTickForgetsWhatWasSaidAfterIt) {
+  scenes::Simulation right = SimulatedRoom::make(scene_);
+  for (std::uint64_t tick = 1; tick <= 5; ++tick) say(tick);
+  for (std::uint64_t tick = 1; tick <= 4; ++tick) {
+    ASSERT_TRUE(predictor_.confirm(inputs_at(simulation_, tick)).ok());
+    ASSERT_TRUE(right.step(inputs_at(right, tick)).ok());
+  }
+  std::vector<std::byte> bytes;
+  right.encode(bytes);
+  ASSERT_TRUE(simulation_.decode(bytes).ok());
+  predictor_.reset(true);
+  predictor_.settle();
+  EXPECT_EQ(predictor_.predicted_tick(), 4u);
+  Inputs guess = inputs_at(right, 4);  // The last that was said in the history that still stands.
+  const std::vector<std::uint16_t> once = one_shot_buttons(scene_);
+  for (std::size_t seat = 0; seat < guess.size(); ++seat)
+    guess[seat].buttons &= static_cast<std::uint16_t>(~once[seat]);
+  predictor_.hear(6, restless_input(0, 6));
+  predictor_.settle();
+  ASSERT_TRUE(right.step(guess).ok());
+  guess[0] = restless_input(0, 6);
+  ASSERT_TRUE(right.step(guess).ok());
+  EXPECT_EQ(simulation_.digest(), right.digest());
 }
 
 TEST_F(PredictorTest, WrongNumberOfInputsChangesNothing) {

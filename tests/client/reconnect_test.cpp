@@ -44,6 +44,12 @@ class Peer {
     std::array<std::byte, 4096> bytes{};
     while (!error) (void)socket_.read_some(asio::buffer(bytes), error);
   }
+  /// Nothing more will be said; what was said is heard.
+  void hang_up() {
+    asio::error_code ignored;
+    socket_.shutdown(tcp::socket::shutdown_send, ignored);
+    drain();
+  }
   void reset() {
     asio::error_code ignored;
     socket_.set_option(tcp::socket::linger(true, 0), ignored);
@@ -216,14 +222,61 @@ TEST_F(Reconnect, ASeatThatItsDeadConnectionStillHoldsIsAskedForAgain) {
 }
 
 TEST_F(Reconnect, GivesUpByItsDeadline) {
-  options_.reconnect.deadline = milliseconds(300);
+  options_.reconnect.deadline = milliseconds(2000);
   const auto begin = std::chrono::steady_clock::now();
-  const JoinReport report = play({[this](Peer& peer, const auto&) { welcome(peer, 1, 3); }});
+  const JoinReport report = play({[this](Peer& peer, const auto&) {
+    welcome(peer, 1, 3);
+    peer.hang_up();
+  }});
   EXPECT_EQ(report.end, End::kDisconnected);
   EXPECT_GE(report.tries, 3u);
   EXPECT_EQ(report.progress.last_tick, 3u);
   EXPECT_EQ(report.final_digest, authority_.simulation().digest());
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST_F(Reconnect, WaitsGrowWhereEachConnectionBreaksAfterItsFirstState) {
+  using Clock = std::chrono::steady_clock;
+  options_.reconnect.first = milliseconds(20);
+  options_.reconnect.longest = milliseconds(5000);
+  std::vector<Clock::time_point> begins;
+  std::vector<Clock::time_point> ends;
+  const Script break_down = [&](Peer& peer, const auto&) {
+    begins.push_back(Clock::now());
+    welcome(peer, 1, 0);
+    ends.push_back(Clock::now());
+  };
+  std::vector<Script> scripts(6, break_down);
+  scripts.push_back([&](Peer& peer, const auto&) {
+    begins.push_back(Clock::now());
+    welcome(peer, 1, 0);
+    peer.tell(protocol::Bye{"over"});
+    peer.drain();
+  });
+  const JoinReport report = play(scripts);
+  EXPECT_EQ(report.end, End::kBye) << report.reason;
+  ASSERT_EQ(begins.size(), 7u);
+  milliseconds least(10);  // Half of the first wait.
+  for (std::size_t i = 0; i < ends.size(); ++i, least *= 2)
+    EXPECT_GE(begins[i + 1] - ends[i], least) << "before connection " << i + 2;
+}
+
+TEST_F(Reconnect, WhereTheServerGivesNoResumeTokensNoneWasForgotten) {
+  const auto let_in = [this](Peer& peer) {
+    peer.tell(authority_.welcome(1));
+    peer.tell(authority_.snapshot());
+  };
+  const JoinReport report = play({
+      [&](Peer& peer, const auto&) { let_in(peer); },
+      [&](Peer& peer, const auto&) {
+        let_in(peer);
+        peer.tell(protocol::Bye{"over"});
+        peer.drain();
+      },
+  });
+  EXPECT_EQ(report.end, End::kBye) << report.reason;
+  EXPECT_EQ(report.reconnects, 1u);
+  EXPECT_EQ(report.fresh_joins, 0u);
 }
 
 TEST_F(Reconnect, OnlyWhoWasLetInOnceComesBack) {

@@ -73,6 +73,18 @@ TEST_F(TlsConnection, SaysNothingToAnotherServer) {
             "the server's certificate is refused: unable to get local issuer certificate");
 }
 
+/// An empty host is the loopback to the resolver, and to OpenSSL the wish to check no name.
+TEST_F(TlsConnection, DoesNotBeginWithoutANameToVerify) {
+  const ServerTls server(files());
+  Handshake shaken;
+  spawn([&] { return answer(server.current(), shaken); });
+  open(trust(), "");
+  run();
+  EXPECT_NE(shaken.end, Handshake::End::kDone);
+  EXPECT_EQ(heard_, "");
+  EXPECT_EQ(closed_, std::vector<std::string>{"no name to verify the server by"});
+}
+
 TEST_F(TlsConnection, GivesUpOnAServerThatDoesNotSpeakTls) {
   for (const bool answers : {true, false}) {
     SCOPED_TRACE(answers);

@@ -83,8 +83,10 @@ const std::vector<FuzzTarget>& targets() {
 #endif
 #ifdef CYCLOID_NETWORK
       {"room", run_room, room_seeds},
+      {"config", run_config, config_seeds},
 #endif
       {"state-delta", run_state_delta, state_delta_seeds},
+      {"golden", run_golden, golden_seeds},
   };
   return kTargets;
 }

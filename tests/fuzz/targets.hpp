@@ -44,6 +44,10 @@ void run_gate(Input input);
 std::vector<Seed> gate_seeds();
 void run_state_delta(Input input);
 std::vector<Seed> state_delta_seeds();
+void run_golden(Input input);
+std::vector<Seed> golden_seeds();
+void run_config(Input input);
+std::vector<Seed> config_seeds();
 
 /// Ends the process with a sentence: the way in which a fuzzer learns of a failure.
 [[noreturn]] void fail(const std::string& why);

@@ -73,6 +73,9 @@ Tuning tuning_of(std::uint32_t choice) {
   tuning.continuous = 1 - choice % 2;
   choice /= 2;
   if (choice % 2 == 1) tuning.warm_starting = 0.7f;
+  choice /= 2;
+  if (choice % 2 == 1 && tuning.stabilisation == solver::Stabilisation::kSoft)
+    tuning.contact_block = solver::ContactBlockRows::kIsland;
   tuning.particle_substeps = 6;
   return tuning;
 }

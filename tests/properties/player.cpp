@@ -50,6 +50,9 @@ std::unique_ptr<World<D>> Player<D>::make_world() const {
   register_shelf(*world);
   (void)world->set_workers(setting_.workers);
   (void)world->set_lanes(setting_.lanes);
+  // Steps of all cases, one after the other, in one memory: what is left in it must not show.
+  static const auto kMemory = solver::make_step_memory<D>();
+  if (revisits_) world->use_step_memory(kMemory);
   return world;
 }
 
@@ -82,6 +85,15 @@ Answer Player<D>::step() {
   const Answer answer = answer_of(world_->step());
   destroyed_ = restored_ = false;
   return answer;
+}
+
+template <int D>
+void Player<D>::forget() {
+  // As bytes: a state in memory shares its shapes with the world, which by that knows them again.
+  std::vector<std::byte> bytes;
+  world_->encode(bytes);
+  if (!world_->decode(bytes).ok()) complaint_ = "its own bytes are refused";
+  restored_ = true;
 }
 
 template <int D>

@@ -40,6 +40,8 @@ class Player {
   /// Any command but kStep. An answer for each call that it made.
   std::vector<Answer> obey(const Command& command);
   Answer step();
+  /// The state is saved and comes back, and with it goes all that the world keeps beside it.
+  void forget();
 
   const solver::World<D>& world() const { return *world_; }
   /// Whether the events of the coming tick are those of a run without restores: which contacts

@@ -81,6 +81,50 @@ TEST(LogCursor, ABranchBeginsWithTheStateOfItsTick) {
   EXPECT_EQ(read_log(branch(keyframe, true)).state, LogState::kCorrupt);
 }
 
+/// A branch is nothing without the state that it goes on from, wherever it is cut before that.
+TEST(LogCursor, ABranchCutBeforeItsStateIsTorn) {
+  const LogKeyframe keyframe{41, 4711, samples::log_tick(41).frame.seats, Bytes(20, std::byte{1})};
+  const Bytes whole = branch(keyframe, true);
+  const Log log = read_log(whole);
+  const std::size_t header_bytes = log.start.header_bytes;
+  for (std::size_t size = header_bytes; size < log.keyframes[0].at + 20; ++size) {
+    const LogSummary cut = scan_log(std::span<const std::byte>(whole).first(size));
+    EXPECT_EQ(cut.state, LogState::kTorn) << size;
+    EXPECT_TRUE(cut.keyframes.empty());
+  }
+}
+
+/// A tick that no match comes to would make readers count without end, or take any memory.
+TEST(LogCursor, ABranchTickThatNoMatchHasIsADamagedHeader) {
+  for (const std::uint64_t tick : {std::uint64_t{1} << 53, ~std::uint64_t{0}}) {
+    LogHeader header = samples::log_header();
+    header.branch_tick = tick;
+    Bytes bytes;
+    append_log_header(header, bytes);
+    EXPECT_EQ(read_log(bytes).state, LogState::kCorrupt);
+    EXPECT_EQ(read_log(bytes).reason, "a damaged header, at byte 0");
+  }
+  LogHeader header = samples::log_header();
+  header.branch_tick = (std::uint64_t{1} << 53) - 1;
+  Bytes bytes;
+  append_log_header(header, bytes);
+  EXPECT_EQ(read_log(bytes).state, LogState::kTorn);
+}
+
+/// What the wire refuses of a frame is in no log.
+TEST(LogCursor, ChangesThatNoFrameCanHaveAreCorruption) {
+  const auto state_of = [](std::size_t count, std::uint32_t value) {
+    LogTick tick = samples::log_tick(1);
+    tick.frame.changes.assign(count, {ChangeKind::kInputDelay, value});
+    Bytes bytes;
+    LogEncoder(samples::log_header(), bytes).tick(tick, bytes);
+    return read_log(bytes).state;
+  };
+  EXPECT_EQ(state_of(kFrameChangesMax, 1), LogState::kOpen);
+  EXPECT_EQ(state_of(kFrameChangesMax + 1, 1), LogState::kCorrupt);
+  EXPECT_EQ(state_of(1, 0), LogState::kCorrupt);
+}
+
 TEST(LogCursor, AKeyframeThatIsNotOfItsTickIsCorruption) {
   Bytes bytes;
   LogEncoder encoder(samples::log_header(), bytes);
@@ -119,7 +163,7 @@ TEST(LogCursor, AnyFrameComesBack) {
                                    static_cast<std::uint16_t>(random() % made.frame.seats.size())});
     for (std::size_t i = 0; i < random() % 3; ++i)
       made.frame.changes.push_back(
-          {ChangeKind::kInputDelay, static_cast<std::uint32_t>(random() >> random() % 64)});
+          {ChangeKind::kInputDelay, static_cast<std::uint32_t>(random() >> random() % 64) | 1u});
     encoder.tick(made, bytes);
     ticks.push_back(std::move(made));
   }

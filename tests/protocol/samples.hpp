@@ -19,6 +19,7 @@ inline Hello hello() {
   hello.mode = Mode::kSnapshot;
   hello.seat_wish = 3;
   hello.name = "Grüße";
+  hello.protocol_minor = 0;  // As the first of them said it.
   return hello;
 }
 

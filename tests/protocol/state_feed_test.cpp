@@ -247,8 +247,8 @@ TEST(ReceivedStates, RefuseWhatTheyCannotUseAndKeepWhatTheyHave) {
   bad.baseline_tick = 17;
   EXPECT_EQ(received.take(bad), "a state against tick 17, which is not held here");
   bad = good;
-  bad.tick = 1;
-  EXPECT_EQ(received.take(bad), "a state of tick 1, here is 1 already");
+  bad.tick = 0;
+  EXPECT_EQ(received.take(bad), "a state of tick 0, here is 1 already");
   bad = good;
   bad.digest ^= 1u;
   EXPECT_EQ(received.take(bad), "a damaged state of tick 31");
@@ -271,6 +271,9 @@ TEST(ReceivedStates, AreBoundedWhateverTheServerNames) {
     EXPECT_LE(received.states(), 10u);
   }
   EXPECT_EQ(received.exact(), played.encoding());
+  EXPECT_TRUE(received.holds(1)) << "the server builds on it, for all that is known here";
+  EXPECT_FALSE(received.holds(31));
+  EXPECT_TRUE(received.holds(32));
   ReceivedStates narrow(Profile::kExact, {10, 1, 1u << 20, 100});
   ReceivedStates small(Profile::kExact, {10, 32u << 20, 100, 100});
   EXPECT_EQ(small.take(feed.delta(std::nullopt)->message), "a damaged state of tick 40");

@@ -3,9 +3,9 @@
 
 #include <random>
 
-#include "server/admission/connection_rates.hpp"
+#include "protocol/text.hpp"
+#include "server/admission/refill_bucket.hpp"
 #include "server/admission/refusal_log.hpp"
-#include "server/admission/resume_book.hpp"
 #include "tests/server/admission_fixture.hpp"
 
 namespace cycloid::server {
@@ -91,98 +91,6 @@ TEST(RefillBucket, WithoutARateHasNoLimit) {
   EXPECT_TRUE(bucket.full(0));
 }
 
-TEST(ConnectionRates, LimitMessagesBytesAndInputsForOneTick) {
-  ConnectionRateOptions options;
-  options.messages = {10, 20};
-  options.bytes = {1000, 2000};
-  options.inputs_per_tick_max = 3;
-  ConnectionRates rates(options, 0);
-  for (int i = 0; i < 20; ++i) EXPECT_EQ(rates.take_message(1, 0), "");
-  EXPECT_EQ(rates.take_message(1, 0), "more than 10 messages per second, and 20 at once");
-  EXPECT_EQ(rates.take_message(1980, kOneSecond_ns), "");
-  EXPECT_EQ(rates.take_message(1000, kOneSecond_ns),
-            "more than 1000 bytes per second, and 2000 at once");
-  for (int i = 0; i < 3; ++i) EXPECT_EQ(rates.take_input(7), "");
-  EXPECT_EQ(rates.take_input(7), "more than 3 inputs for tick 7");
-  EXPECT_EQ(rates.take_input(8), "");
-  EXPECT_EQ(rates.take_input(7), "more than 3 inputs for tick 7");
-}
-
-TEST(ConnectionRates, AStallOfManyTicksIsNoFlood) {
-  ConnectionRates rates({}, 0);
-  for (std::uint64_t tick = 1; tick <= 1000; ++tick) ASSERT_EQ(rates.take_input(tick), "") << tick;
-  for (std::uint64_t tick = 936; tick <= 1000; ++tick)
-    ASSERT_EQ(rates.take_input(tick), "") << tick;
-  ASSERT_EQ(rates.take_input(1'000'000), "");
-  for (int i = 0; i < 7; ++i) ASSERT_EQ(rates.take_input(1'000'000), "");
-  ASSERT_NE(rates.take_input(1'000'000), "");
-}
-
-TEST(ResumeBook, BringsASeatBackOnceAndGivesTheNextToken) {
-  ResumeBook book("arena", seeded_random(5));
-  const ResumeToken first = book.issue(0);
-  const ResumeToken other = book.issue(1);
-  const auto resumed = book.redeem(first, 0);
-  ASSERT_TRUE(resumed.has_value());
-  EXPECT_EQ(resumed->seat, 0);
-  EXPECT_NE(resumed->next, first);
-  book.confirm(0);
-  EXPECT_FALSE(book.redeem(first, 0).has_value());
-  EXPECT_EQ(book.redeem(other, 0)->seat, 1);
-  EXPECT_EQ(book.redeem(resumed->next, 0)->seat, 0);
-}
-
-TEST(ResumeBook, AWelcomeThatWasLostLocksNobodyOut) {
-  ResumeBook book("arena", seeded_random(5));
-  const ResumeToken first = book.issue(0);
-  const ResumeToken lost = book.redeem(first, 0)->next;
-  const auto again = book.redeem(first, 0);
-  ASSERT_TRUE(again.has_value());
-  EXPECT_FALSE(book.redeem(lost, 0).has_value());
-  const auto later = book.redeem(again->next, 0);
-  ASSERT_TRUE(later.has_value());
-  EXPECT_FALSE(book.redeem(first, 0).has_value());
-}
-
-TEST(ResumeBook, RefusesWhatItDidNotGiveOut) {
-  ResumeBook book("arena", seeded_random(5));
-  ResumeBook elsewhere("cellar", seeded_random(5));
-  const ResumeToken token = book.issue(0);
-  EXPECT_EQ(elsewhere.issue(0), token);
-  ResumeBook cellar("cellar", seeded_random(6));
-  (void)cellar.issue(0);
-  EXPECT_FALSE(cellar.redeem(token, 0).has_value());
-  for (std::size_t bit = 0; bit < 8 * token.size(); ++bit) {
-    ResumeToken flipped = token;
-    flipped[bit / 8] ^= static_cast<std::byte>(1u << (bit % 8));
-    ASSERT_FALSE(book.redeem(flipped, 0).has_value()) << bit;
-  }
-  EXPECT_FALSE(book.redeem({}, 0).has_value());
-  EXPECT_FALSE(book.redeem(std::span(token).first(31), 0).has_value());
-  EXPECT_EQ(book.redeem(token, 0)->seat, 0);
-  book.forget(0);
-  EXPECT_FALSE(book.redeem(token, 0).has_value());
-  EXPECT_EQ(book.size(), 0u);
-}
-
-TEST(ResumeBook, ExpiresOnlyAfterTheConnectionIsGone) {
-  ResumeBook book("arena", seeded_random(5));
-  const ResumeToken token = book.issue(0);
-  book.let_expire(0, 100);
-  EXPECT_FALSE(book.redeem(token, 101).has_value());
-  const auto resumed = book.redeem(token, 100);
-  ASSERT_TRUE(resumed.has_value());
-  EXPECT_TRUE(book.redeem(resumed->next, 1'000'000).has_value());
-}
-
-TEST(ResumeBook, ANewHolderEndsTheOldOnesClaim) {
-  ResumeBook book("arena", seeded_random(5));
-  const ResumeToken old = book.issue(0);
-  const ResumeToken now = book.issue(0);
-  EXPECT_FALSE(book.redeem(old, 0).has_value());
-  EXPECT_TRUE(book.redeem(now, 0).has_value());
-}
-
 TEST(RefusalLog, WritesACauseOnceAndCountsTheRest) {
   RefusalLog log;
   const PeerAddress from = PeerAddress::v4({192, 0, 2, 7});
@@ -225,10 +133,10 @@ TEST(RefusalLog, LinesNameTheCodeAndHoldNoControlCharacters) {
   EXPECT_EQ(refusal_line(Refusal::kTooSlow, "no hello", from, 3),
             "refused 192.0.2.7: kTooSlow (9): no hello (and 3 more since)");
   EXPECT_LT(refusal_line(Refusal::kTooSlow, std::string(5000, 'x'), from, 0).size(), 320u);
-  EXPECT_STREQ(refusal_name(Refusal::kProtocolVersion), "kProtocolVersion");
-  EXPECT_STREQ(refusal_name(protocol::kLastRefusal), "kResyncLimit");
-  EXPECT_STREQ(refusal_name(static_cast<Refusal>(0)), "an unknown code");
-  EXPECT_STREQ(refusal_name(static_cast<Refusal>(23)), "an unknown code");
+  EXPECT_STREQ(protocol::refusal_name(Refusal::kProtocolVersion), "kProtocolVersion");
+  EXPECT_STREQ(protocol::refusal_name(protocol::kLastRefusal), "kResyncLimit");
+  EXPECT_STREQ(protocol::refusal_name(static_cast<Refusal>(0)), "an unknown code");
+  EXPECT_STREQ(protocol::refusal_name(static_cast<Refusal>(23)), "an unknown code");
 }
 
 }  // namespace

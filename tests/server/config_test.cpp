@@ -1,56 +1,22 @@
 #include "server/config/config.hpp"
 
 #include <gtest/gtest.h>
-#include <unistd.h>
 
 #include <algorithm>
-#include <csignal>
-#include <filesystem>
 #include <fstream>
 #include <iterator>
 #include <map>
 #include <regex>
 
-#include "server/config/run.hpp"
-#include "tests/server/host_fixture.hpp"
+#include "tests/server/config_fixture.hpp"
 
 namespace cycloid::server {
 namespace {
 
 using namespace std::chrono_literals;
 
-scenes::Loaded load(const std::string& name) {
-  if (name != "two-seats") return scenes::find(name);
-  scenes::Loaded loaded;
-  loaded.scene = two_seat_scene();
-  return loaded;
-}
-
-constexpr const char* kRooms = R"(
-[template.duel]
-scene = "two-seats"
-on_first_join = true
-
-[[room]]
-name = "arena"
-template = "duel"
-)";
-
-/// A file that is gone with the test.
-class ConfigFile {
- public:
-  explicit ConfigFile(const std::string& what)
-      : path_(testing::TempDir() + "cycloid-" + what + "-" + std::to_string(::getpid())) {}
-  ~ConfigFile() { std::filesystem::remove(path_); }
-  void write(const std::string& text) const { std::ofstream(path_) << text; }
-  const std::string& path() const { return path_; }
-
- private:
-  std::string path_;
-};
-
 TEST(Config, WhatIsNotSaidIsAsDocumented) {
-  const ConfigResult read = read_config(kRooms, load);
+  const ConfigResult read = read_config(kConfigRooms, load_for_test);
   ASSERT_TRUE(read.config) << config_mistakes_text("f", read.mistakes);
   EXPECT_EQ(read.config->host.port, 7777);
   EXPECT_EQ(read.config->host.threads, 2);
@@ -62,7 +28,8 @@ TEST(Config, WhatIsNotSaidIsAsDocumented) {
 }
 
 TEST(Config, WhatIsSaidIsTaken) {
-  const std::string text = std::string(R"(
+  const std::string text =
+      std::string(R"(
 [server]
 port = 0
 threads = 3
@@ -73,8 +40,10 @@ rooms = 9
 queue_bytes = 8192
 [operation]
 missed_ticks = 12
-)") + kRooms + "[template.slow]\nscene = \"two-seats\"\ntick_rate_hz = 0.5\nempty_ttl_s = 7\n";
-  const ConfigResult read = read_config(text, load);
+)") + kConfigRooms +
+      "[template.slow]\nscene = \"two-seats\"\ntick_rate_hz = 0.5\nempty_ttl_s = 7\n" +
+      "log_sync = \"none\"\n";
+  const ConfigResult read = read_config(text, load_for_test);
   ASSERT_TRUE(read.config) << config_mistakes_text("f", read.mistakes);
   EXPECT_EQ(read.config->host.threads, 3);
   EXPECT_EQ(read.config->host.drain, 4s);
@@ -85,6 +54,7 @@ missed_ticks = 12
   const RoomSettings& slow = read.config->host.templates.at("slow").settings;
   EXPECT_EQ(slow.tick_rate_millihertz, 500u);
   EXPECT_EQ(slow.empty_ttl, 7s);
+  EXPECT_EQ(slow.log_sync, LogSync::kNone);
 }
 
 TEST(Config, EveryMistakeIsNamedWithItsLineAndKey) {
@@ -110,7 +80,7 @@ template = "duet"
 [[room]]
 name = "arena"
 )",
-                                        load);
+                                        load_for_test);
   ASSERT_FALSE(read.config);
   std::map<std::string, std::uint32_t> seen;
   for (const ConfigMistake& mistake : read.mistakes) {
@@ -134,8 +104,48 @@ name = "arena"
   EXPECT_EQ(seen, kExpected) << config_mistakes_text("file", read.mistakes);
 }
 
+TEST(Config, RoomsThatAnybodyMakesEndWhenTheyAreEmpty) {
+  const ConfigResult read =
+      read_config("[template.duel]\nscene = \"two-seats\"\non_first_join = true\n", load_for_test);
+  ASSERT_EQ(read.mistakes.size(), 1u);
+  EXPECT_EQ(read.mistakes[0].key, "template.duel.empty_ttl_s");
+}
+
+TEST(Config, ANetworkHasRoomForOneOfItsHosts) {
+  const auto limits_of = [](const std::string& text) {
+    return read_config(text + kConfigRooms, load_for_test).config->host.gate.addresses;
+  };
+  EXPECT_EQ(limits_of("").network_connections_max, 512u);
+  const auto wide = limits_of("[limits]\naddress_connections = 2000\n");
+  EXPECT_EQ(wide.host_connections_max, 2000u);
+  EXPECT_EQ(wide.network_connections_max, 2000u);
+}
+
+TEST(Config, AFolderIsNoFileAndNoReasonToEnd) {
+  const ConfigResult read = read_config_file(testing::TempDir(), load_for_test);
+  ASSERT_EQ(read.mistakes.size(), 1u);
+  EXPECT_EQ(read.mistakes[0].reason, "the file cannot be read");
+  std::string mistake;
+  EXPECT_EQ(read_admin_token(testing::TempDir(), mistake), "");
+  EXPECT_EQ(mistake, testing::TempDir() + ": cannot be read");
+}
+
+TEST(Config, AFileWithoutAnEndIsNotReadToIt) {
+  std::string mistake;
+  EXPECT_EQ(read_admin_token("/dev/zero", mistake), "");
+  EXPECT_EQ(mistake, "/dev/zero: cannot be read");
+}
+
+TEST(Config, ANameThatNoFolderCanHaveIsNoReasonToEnd) {
+  const std::string text = "[template.long]\nscene = \"two-seats\"\nlog_directory = \"" +
+                           std::string(5000, 'x') + "\"\n" + kConfigRooms;
+  const ConfigResult read = read_config(text, load_for_test);
+  ASSERT_EQ(read.mistakes.size(), 1u);
+  EXPECT_EQ(read.mistakes[0].key, "template.long.log_directory");
+}
+
 TEST(Config, WhatIsNotAsciiIsRefusedWithItsLine) {
-  const ConfigResult read = read_config("[server]\n# caf\xc3\xa9\n", scenes::load);
+  const ConfigResult read = read_config("[server]\n# caf\xc3\xa9\n", load_for_test);
   ASSERT_FALSE(read.config);
   ASSERT_EQ(read.mistakes.size(), 1u);
   EXPECT_EQ(read.mistakes[0].line, 2u);
@@ -144,7 +154,7 @@ TEST(Config, WhatIsNotAsciiIsRefusedWithItsLine) {
 
 TEST(Config, WhatIsNoTomlIsSaidWithItsLine) {
   for (const char* text : {"[server]\nport = \n", "[server]\nport = 1\nport = 2\n"}) {
-    const ConfigResult read = read_config(text, load);
+    const ConfigResult read = read_config(text, load_for_test);
     ASSERT_EQ(read.mistakes.size(), 1u);
     EXPECT_GE(read.mistakes[0].line, 2u) << read.mistakes[0].reason;
     EXPECT_EQ(read.mistakes[0].reason.substr(0, 8), "not TOML");
@@ -154,9 +164,11 @@ TEST(Config, WhatIsNoTomlIsSaidWithItsLine) {
 TEST(Config, TheAdminNeedsATokenAndStaysAtHome) {
   const ConfigFile token("token");
   const auto keys_of = [&](const std::string& rest) {
-    const std::string text = "[admin]\ntoken_file = \"" + token.path() + "\"\n" + rest + kRooms;
+    const std::string text =
+        "[admin]\ntoken_file = \"" + token.path() + "\"\n" + rest + kConfigRooms;
     std::string keys;
-    for (const ConfigMistake& mistake : read_config(text, load).mistakes) keys += mistake.key + " ";
+    for (const ConfigMistake& mistake : read_config(text, load_for_test).mistakes)
+      keys += mistake.key + " ";
     return keys;
   };
   EXPECT_EQ(keys_of(""), "admin.token_file ");  // It is not there.
@@ -173,7 +185,7 @@ TEST(Config, TheAdminNeedsATokenAndStaysAtHome) {
 TEST(Config, TokensNeedKeysAndTlsItsFiles) {
   const auto keys_of = [&](const std::string& head) {
     std::string keys;
-    for (const ConfigMistake& mistake : read_config(head + kRooms, load).mistakes) {
+    for (const ConfigMistake& mistake : read_config(head + kConfigRooms, load_for_test).mistakes) {
       keys += mistake.key + " ";
     }
     return keys;
@@ -215,7 +227,7 @@ TEST(Config, TheDocumentListsEveryKey) {
 
 TEST(ConfigReload, TakesWhatIsSafeAndNothingElse) {
   const auto read = [](const std::string& text) {
-    return *read_config(text + kRooms, load).config;
+    return *read_config(text + kConfigRooms, load_for_test).config;
   };
   const ServerConfig running = read("[server]\nport = 1\n");
   EXPECT_TRUE(fixed_differences(running, running).empty());
@@ -231,74 +243,6 @@ TEST(ConfigReload, TakesWhatIsSafeAndNothingElse) {
   EXPECT_EQ(std::ranges::count(added, "template.new.scene"), 1);
   EXPECT_EQ(std::ranges::count(added, "template.new.ticks"), 1);
   for (const std::string& key : added) EXPECT_TRUE(key.starts_with("template.new.")) << key;
-}
-
-/// A configured server that runs beside the test.
-class Configured {
- public:
-  explicit Configured(const ConfigFile& file) {
-    ConfiguredServer server;
-    server.config = *read_config_file(file.path(), load).config;
-    server.file = file.path();
-    server.load_scene = load;
-    server.config.host.logger = lines_.logger();
-    std::promise<ListeningAt> at;
-    auto listening = at.get_future();
-    report_ = std::async(std::launch::async, [this, server, &at] {
-      return run_configured(
-          server, [&](const ListeningAt& where) { at.set_value(where); }, stop_.get_token());
-    });
-    at_ = listening.get();
-  }
-  ~Configured() { stop_.request_stop(); }
-  const ListeningAt& at() const { return at_; }
-  HostReport stop() {
-    stop_.request_stop();
-    return report_.get();
-  }
-  std::string lines() const { return lines_.text(); }
-
- private:
-  HostLines lines_;
-  std::stop_source stop_;
-  std::future<HostReport> report_;
-  ListeningAt at_;
-};
-
-TEST(ConfigReload, BySighupTakesLimitsAndRefusesAPortByName) {
-  const ConfigFile file("reload");
-  const std::string ports = "[server]\nport = 0\n[operation]\nport = 0\n";
-  file.write(ports + kRooms);
-  Configured server(file);
-  HostPeer first(server.at().port);
-  first.greet("duel:1");
-  ASSERT_TRUE(first.wait_for<protocol::Welcome>());
-
-  const auto reload = [&](const std::string& text) {
-    file.write(text);
-    ASSERT_EQ(::kill(::getpid(), SIGHUP), 0);
-    std::this_thread::sleep_for(300ms);
-  };
-  reload("[server]\nport = 4711\n[operation]\nport = 0\n[limits]\nrooms = 1\n" +
-         std::string(kRooms));
-  HostPeer second(server.at().port);  // The old limit still holds: nothing was taken.
-  second.greet("duel:2");
-  ASSERT_TRUE(second.wait_for<protocol::Welcome>());
-  reload("[server\n");
-  reload(ports + "[limits]\nrooms = 1\n" + kRooms);
-  HostPeer third(server.at().port);
-  third.greet("duel:3");
-  const auto refused = third.wait_for<protocol::Refused>();
-  ASSERT_TRUE(refused);
-  EXPECT_EQ(refused->code, protocol::Refusal::kRoomFull);
-  first.hang_up();
-  second.hang_up();
-  EXPECT_TRUE(server.stop().good);
-  const std::string lines = server.lines();
-  EXPECT_NE(lines.find("cannot change while the server runs: server.port"), std::string::npos)
-      << lines;
-  EXPECT_NE(lines.find("not TOML"), std::string::npos) << lines;
-  EXPECT_NE(lines.find("reloaded " + file.path()), std::string::npos) << lines;
 }
 
 }  // namespace

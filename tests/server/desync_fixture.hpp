@@ -58,14 +58,13 @@ class DesyncTest : public testing::Test {
     identity_.scene = std::make_shared<const scenes::Scene>(std::move(*loaded.scene));
     identity_.scene_digest = scenes::scene_digest(*identity_.scene);
     identity_.build = "server build";
-    const scenes::Simulation start = simulation_of(*identity_.scene);
     RoomInquiryHooks asking;
     asking.now_ns = [this] { return now_; };
     asking.publish = [this](const Finding& finding) {
       findings_.push_back(finding);
       return report_line(investigate(finding));
     };
-    inquiry_.emplace(options, std::make_shared<const RoomIdentity>(identity_), start, asking);
+    inquiry_.emplace(options, std::make_shared<const RoomIdentity>(identity_), asking);
     RoomOptions room;
     room.scene_digest = identity_.scene_digest;
     RoomHooks hooks;

@@ -6,6 +6,7 @@
 #include "server/desync/inquiry.hpp"
 #include "server/desync/report.hpp"
 #include "solver/encoding.hpp"
+#include "tests/server/kept_evidence.hpp"
 #include "tests/server/room_fixture.hpp"
 
 namespace cycloid::server {
@@ -18,7 +19,7 @@ class DesyncDeskTest : public testing::Test {
  protected:
   static constexpr std::int64_t kSecondNs = 1'000'000'000;
 
-  void open(DesyncDeskOptions options = {}) {
+  void open(DesyncDeskOptions options = {}, std::uint64_t state_ticks = 60) {
     auto identity = std::make_shared<RoomIdentity>();
     identity->room = "arena";
     identity->scene = std::make_shared<const scenes::Scene>(two_seat_scene());
@@ -27,7 +28,7 @@ class DesyncDeskTest : public testing::Test {
     server_.emplace(simulation_of(*identity_->scene));
     client_.emplace(simulation_of(*identity_->scene));
     desk_.emplace(options, identity_);
-    desk_->start(*server_);
+    evidence_.emplace(state_ticks, *server_);
   }
 
   void step() {
@@ -38,7 +39,7 @@ class DesyncDeskTest : public testing::Test {
     ASSERT_TRUE(server_->step(inputs).ok());
     ASSERT_TRUE(client_->step(inputs).ok());
     client_digests_.push_back(client_->digest());
-    desk_->on_tick(frame, server_->digest(), *server_);
+    evidence_->add(std::move(frame), *server_);
     now_ += kSecondNs / 60;
   }
   void step_to(std::uint64_t tick) {
@@ -56,7 +57,7 @@ class DesyncDeskTest : public testing::Test {
   bool mismatch(PeerId peer) {
     const protocol::Digest said{server_->tick(), client_->digest()};
     desk_->on_digest(peer, said.tick, said.digest);
-    return desk_->on_mismatch({peer, "guest", "their build", 0}, said, now_);
+    return desk_->on_mismatch({peer, "guest", "their build", 0}, said, now_, *evidence_);
   }
   /// Of all ticks so far, as the client has them.
   protocol::TickDigests digests() const { return {1, client_digests_}; }
@@ -64,10 +65,12 @@ class DesyncDeskTest : public testing::Test {
   void send_state(PeerId peer, std::uint64_t tick, const std::vector<std::byte>& state) {
     for (std::size_t at = 0; at < state.size(); at += protocol::kStatePartBytesMax) {
       const std::size_t size = std::min(protocol::kStatePartBytesMax, state.size() - at);
-      desk_->on_state_part(peer, {tick,
-                                  static_cast<std::uint32_t>(state.size()),
-                                  static_cast<std::uint32_t>(at),
-                                  {state.begin() + at, state.begin() + at + size}});
+      desk_->on_state_part(peer,
+                           {tick,
+                            static_cast<std::uint32_t>(state.size()),
+                            static_cast<std::uint32_t>(at),
+                            {state.begin() + at, state.begin() + at + size}},
+                           *evidence_);
     }
   }
   static std::vector<std::byte> encoded(const scenes::Simulation& simulation) {
@@ -85,12 +88,12 @@ class DesyncDeskTest : public testing::Test {
     state_ = encoded(*client_);
     step_to(30);
     EXPECT_TRUE(mismatch(peer));
-    const auto wanted = desk_->on_tick_digests(peer, digests());
+    const auto wanted = desk_->on_tick_digests(peer, digests(), *evidence_);
     return wanted ? wanted->tick : 0;
   }
   /// The one finding that there is once all waits are over.
   Finding only_finding() {
-    auto findings = desk_->take_findings(now_ + 20 * kSecondNs, 1);
+    auto findings = desk_->take_findings(now_ + 20 * kSecondNs, *evidence_);
     EXPECT_EQ(findings.size(), 1u);
     EXPECT_EQ(desk_->open(), 0u);
     EXPECT_EQ(desk_->held_bytes(), 0u);
@@ -101,6 +104,7 @@ class DesyncDeskTest : public testing::Test {
   std::optional<scenes::Simulation> server_;
   std::optional<scenes::Simulation> client_;
   std::optional<DesyncDesk> desk_;
+  std::optional<KeptEvidence> evidence_;
   std::vector<std::uint64_t> client_digests_;
   std::vector<std::byte> state_;  ///< Of the client's first tick that differs.
   std::int64_t now_ = kSecondNs;
@@ -128,8 +132,8 @@ TEST_F(DesyncDeskTest, NamesAValueThatNoWorldWouldTake) {
   client_digests_.back() = client_->digest();
   const auto state = encoded(*client_);
   const protocol::Digest said{20, client_->digest()};
-  ASSERT_TRUE(desk_->on_mismatch({1, "guest", "", 0}, said, now_));
-  ASSERT_TRUE(desk_->on_tick_digests(1, digests()));
+  ASSERT_TRUE(desk_->on_mismatch({1, "guest", "", 0}, said, now_, *evidence_));
+  ASSERT_TRUE(desk_->on_tick_digests(1, digests(), *evidence_));
   send_state(1, 20, state);
   const DesyncReport report = investigate(only_finding());
   ASSERT_EQ(report.differences, 1u);
@@ -141,6 +145,11 @@ TEST_F(DesyncDeskTest, NamesAValueThatNoWorldWouldTake) {
 TEST_F(DesyncDeskTest, GarbageOfTheRightSizeIsNoState) {
   open();
   const std::uint64_t tick = diverge();
+  desk_->on_state_part(1, {tick, 1, 0, std::vector<std::byte>(1)}, *evidence_);
+  const Finding known = only_finding();
+  open();
+  client_digests_.clear();
+  ASSERT_EQ(diverge(), tick);
   std::mt19937 random(7);
   for (int round = 0; round < 3; ++round) {
     // All of it; all behind the head of an encoding; a few bytes.
@@ -151,8 +160,8 @@ TEST_F(DesyncDeskTest, GarbageOfTheRightSizeIsNoState) {
     Finding finding;
     finding.room = identity_;
     finding.tick = finding.noticed_tick = tick;
-    finding.start = desk_->history().before(tick);
-    finding.ticks = desk_->history().ticks(1, 30);
+    finding.start = known.start;
+    finding.ticks = known.ticks;
     finding.client_state = garbage;
     const DesyncReport report = investigate(finding);
     EXPECT_FALSE(report.notes.empty());
@@ -175,7 +184,7 @@ TEST_F(DesyncDeskTest, ALieAboutTheDigestIsSeen) {
 TEST_F(DesyncDeskTest, AWrongSizeIsRefusedBeforeAnythingIsHeld) {
   open();
   const std::uint64_t tick = diverge();
-  desk_->on_state_part(1, {tick, 0xffffffffu, 0, std::vector<std::byte>(100)});
+  desk_->on_state_part(1, {tick, 0xffffffffu, 0, std::vector<std::byte>(100)}, *evidence_);
   EXPECT_EQ(desk_->held_bytes(), 0u);
   EXPECT_THAT(only_finding().missing, HasSubstr("its state has 4294967295 bytes, of 1 to"));
   EXPECT_EQ(desk_->counts().without, 1u);
@@ -186,12 +195,12 @@ TEST_F(DesyncDeskTest, PartsOutOfOrderAndOfAnotherTickEndTheInquiry) {
     open();
     client_digests_.clear();
     const std::uint64_t tick = diverge();
-    desk_->on_state_part(1, {tick, 5000, 0, std::vector<std::byte>(3000)});
+    desk_->on_state_part(1, {tick, 5000, 0, std::vector<std::byte>(3000)}, *evidence_);
     EXPECT_EQ(desk_->held_bytes(), 3000u);
     if (other_tick)
-      desk_->on_state_part(1, {tick + 1, 5000, 3000, std::vector<std::byte>(2000)});
+      desk_->on_state_part(1, {tick + 1, 5000, 3000, std::vector<std::byte>(2000)}, *evidence_);
     else
-      desk_->on_state_part(1, {tick, 5000, 0, std::vector<std::byte>(3000)});
+      desk_->on_state_part(1, {tick, 5000, 0, std::vector<std::byte>(3000)}, *evidence_);
     EXPECT_EQ(desk_->held_bytes(), 0u);
     EXPECT_THAT(only_finding().missing, HasSubstr(other_tick ? "tick 21" : "out of order"));
   }
@@ -202,8 +211,8 @@ TEST_F(DesyncDeskTest, WhatIsSaidTwiceOrUnaskedIsCountedOnly) {
   const std::uint64_t tick = diverge();
   send_state(1, tick, state_);
   send_state(1, tick, state_);
-  EXPECT_FALSE(desk_->on_tick_digests(1, digests()));
-  EXPECT_FALSE(desk_->on_tick_digests(99, digests()));
+  EXPECT_FALSE(desk_->on_tick_digests(1, digests(), *evidence_));
+  EXPECT_FALSE(desk_->on_tick_digests(99, digests(), *evidence_));
   EXPECT_GE(desk_->counts().unasked, 3u);
   EXPECT_FALSE(mismatch(1));  // Its inquiry is open.
   EXPECT_EQ(investigate(only_finding()).differences, 1u);
@@ -214,8 +223,8 @@ TEST_F(DesyncDeskTest, OneThatSaysNothingEndsAtTheDeadline) {
   step_to(20);
   flip(*client_, 1, 0);
   ASSERT_TRUE(mismatch(1));
-  EXPECT_TRUE(desk_->take_findings(now_ + 9 * kSecondNs, 1).empty());
-  const auto findings = desk_->take_findings(now_ + 10 * kSecondNs, 1);
+  EXPECT_TRUE(desk_->take_findings(now_ + 9 * kSecondNs, *evidence_).empty());
+  const auto findings = desk_->take_findings(now_ + 10 * kSecondNs, *evidence_);
   ASSERT_EQ(findings.size(), 1u);
   EXPECT_EQ(findings[0].missing, "it did not say which ticks differ");
   const DesyncReport report = investigate(findings[0]);
@@ -236,7 +245,7 @@ TEST_F(DesyncDeskTest, DigestsThatFitNothingEndTheInquiry) {
     step_to(30);
     flip(*client_, 1, 0);
     ASSERT_TRUE(mismatch(1));
-    EXPECT_FALSE(desk_->on_tick_digests(1, said));
+    EXPECT_FALSE(desk_->on_tick_digests(1, said, *evidence_));
     EXPECT_THAT(only_finding().missing, HasSubstr(why));
   }
   open();
@@ -245,7 +254,7 @@ TEST_F(DesyncDeskTest, DigestsThatFitNothingEndTheInquiry) {
   const protocol::TickDigests equal = digests();
   flip(*client_, 1, 0);
   ASSERT_TRUE(mismatch(1));
-  EXPECT_FALSE(desk_->on_tick_digests(1, equal));
+  EXPECT_FALSE(desk_->on_tick_digests(1, equal, *evidence_));
   EXPECT_EQ(only_finding().missing, "none of the digests that it sent differs");
 }
 
@@ -261,11 +270,11 @@ TEST_F(DesyncDeskTest, OneInquiryAPeerTwoARoomAndSoManyAnHour) {
   EXPECT_FALSE(mismatch(3));
   desk_->on_leave(1);
   desk_->on_leave(2);
-  EXPECT_EQ(desk_->take_findings(now_ + 2 * kSecondNs, 2).size(), 2u);
+  EXPECT_EQ(desk_->take_findings(now_ + 2 * kSecondNs, *evidence_).size(), 2u);
   EXPECT_TRUE(mismatch(3));
   EXPECT_FALSE(mismatch(4));
   desk_->on_leave(3);
-  EXPECT_EQ(desk_->take_findings(now_ + 2 * kSecondNs, 2).size(), 1u);
+  EXPECT_EQ(desk_->take_findings(now_ + 2 * kSecondNs, *evidence_).size(), 1u);
   EXPECT_FALSE(mismatch(5));
   now_ += 3600 * kSecondNs;
   EXPECT_TRUE(mismatch(6));
@@ -274,9 +283,7 @@ TEST_F(DesyncDeskTest, OneInquiryAPeerTwoARoomAndSoManyAnHour) {
 
 TEST_F(DesyncDeskTest, SuspectsTheServerWhereItsOwnBitFlipped) {
   for (const std::uint64_t state_ticks : {1u, 20u}) {
-    DesyncDeskOptions options;
-    options.history.state_ticks = state_ticks;
-    open(options);
+    open({}, state_ticks);
     client_digests_.clear();
     step_to(22);
     flip(*server_, 2, 1);
@@ -285,12 +292,12 @@ TEST_F(DesyncDeskTest, SuspectsTheServerWhereItsOwnBitFlipped) {
     state = encoded(*client_);
     step_to(40);
     for (const PeerId peer : {1u, 2u, 3u}) mismatch(peer);
-    const auto wanted = desk_->on_tick_digests(1, digests());
+    const auto wanted = desk_->on_tick_digests(1, digests(), *evidence_);
     ASSERT_TRUE(wanted);
     EXPECT_EQ(wanted->tick, 23u);  // Made by the flipped state; its own digest was taken before.
     send_state(1, 23, state);
     desk_->on_leave(2);
-    const auto findings = desk_->take_findings(now_ + 20 * kSecondNs, 3);
+    const auto findings = desk_->take_findings(now_ + 20 * kSecondNs, *evidence_);
     ASSERT_EQ(findings.size(), 2u);
     const DesyncReport report = investigate(findings[0]);
     EXPECT_TRUE(report.server_suspect);
@@ -318,30 +325,43 @@ TEST_F(DesyncDeskTest, TheMajorityAloneMakesTheServerSuspect) {
   EXPECT_FALSE(votes.against_server());
 }
 
-TEST_F(DesyncDeskTest, ARewindBeginsAnew) {
+TEST_F(DesyncDeskTest, ARewindEndsWhatIsOpenAndMixesNoBranches) {
   open();
   const std::uint64_t tick = diverge();
-  protocol::InputFrame frame;
-  frame.tick = 12;
-  desk_->on_tick(frame, 5, *client_);
-  EXPECT_EQ(desk_->history().last_tick(), client_->tick());
-  EXPECT_FALSE(desk_->history().before(tick));
-  EXPECT_THAT(only_finding().missing, HasSubstr("taken back"));
+  const auto findings = desk_->close("the match was taken back meanwhile", *evidence_);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].missing, "the match was taken back meanwhile");
+  EXPECT_EQ(findings[0].tick, tick);
+  EXPECT_EQ(findings[0].ticks.back().frame.tick, 30u);
+  EXPECT_EQ(findings[0].votes.replicas, 1u);
+  EXPECT_EQ(desk_->counts().without, 1u);
+  EXPECT_EQ(desk_->open(), 0u);
+
+  evidence_->drop_after(10);
+  send_state(1, tick, state_);
+  EXPECT_FALSE(desk_->on_tick_digests(1, digests(), *evidence_)) << "nobody is asked any more";
+  server_.emplace(simulation_of(*identity_->scene));
+  evidence_.emplace(60, *server_);
+  client_.emplace(simulation_of(*identity_->scene));
+  client_digests_.clear();
+  step_to(40);
+  EXPECT_TRUE(desk_->take_findings(now_ + 20 * kSecondNs, *evidence_).empty());
+  flip(*client_, 1, 0);
+  EXPECT_TRUE(mismatch(1)) << "and a new desync is looked into";
+  EXPECT_EQ(only_finding().votes.replicas, 1u) << "without the votes of before";
 }
 
-TEST_F(DesyncDeskTest, HistoryKeepsToItsBounds) {
-  DesyncDeskOptions options;
-  options.history.state_ticks = 5;
-  options.history.ticks_max = 40;
-  open(options);
-  step_to(200);
-  EXPECT_FALSE(desk_->history().digest(150));
-  EXPECT_TRUE(desk_->history().digest(170));
-  EXPECT_LE(desk_->history().state_bytes(), 9 * desk_->history().newest_bytes());
-  options.history.bytes_max = 1;
-  open(options);
-  step_to(50);
-  EXPECT_EQ(desk_->history().state_bytes(), desk_->history().newest_bytes());
+TEST_F(DesyncDeskTest, WhatIsWholeWhenTheMatchEndsIsFoundWhole) {
+  open();
+  const std::uint64_t tick = diverge();
+  send_state(1, tick, state_);
+  step_to(34);
+  const auto findings = desk_->close("the match ended", *evidence_);
+  ASSERT_EQ(findings.size(), 1u);
+  EXPECT_EQ(findings[0].missing, "");
+  EXPECT_EQ(findings[0].ticks.back().frame.tick, 34u) << "with what was made since";
+  EXPECT_EQ(investigate(findings[0]).differences, 1u);
+  EXPECT_EQ(desk_->counts().complete, 1u);
 }
 
 }  // namespace

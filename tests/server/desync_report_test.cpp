@@ -122,5 +122,47 @@ INSTANTIATE_TEST_SUITE_P(
       return name;
     });
 
+class DesyncBreaks : public DesyncTest {
+ protected:
+  /// A client whose state differs from tick 57 on, shortly after both have said their digests.
+  void diverge() {
+    open("half-pipe", 2);
+    run_to(57);
+    change_state(guests_[1].replica->simulation(),
+                 [](auto& state) { flip_bit(state.bodies.at(1).position[0], 0); });
+    run_to(65);
+    ASSERT_EQ(inquiry_->desk().open(), 1u);
+    ASSERT_TRUE(findings_.empty()) << "it waits for the others' votes";
+  }
+};
+
+TEST_F(DesyncBreaks, TheEndOfTheMatchLosesNoFinding) {
+  diverge();
+  room_->drain("over");
+  ASSERT_EQ(findings_.size(), 1u);
+  const DesyncReport report = investigate(findings_[0]);
+  EXPECT_EQ(report.tick, 57u);
+  EXPECT_EQ(report.differences, 1u);
+  EXPECT_EQ(report.votes.replicas, 2u);
+  EXPECT_EQ(report.inputs.size(), 17u) << "8 ticks before, and 8 after";
+  EXPECT_EQ(inquiry_->desk().open(), 0u);
+}
+
+TEST_F(DesyncBreaks, ARewindEndsTheFindingWithWhatWasOfItsBranch) {
+  diverge();
+  ASSERT_TRUE(room_->rewind(50));
+  ASSERT_EQ(findings_.size(), 1u);
+  run_to(200);
+  EXPECT_EQ(findings_.size(), 1u);
+  const DesyncReport report = investigate(findings_[0]);
+  EXPECT_EQ(report.tick, 57u);
+  EXPECT_EQ(report.differences, 1u);
+  EXPECT_FALSE(report.server_suspect);
+  EXPECT_EQ(report.votes.with_server, 1u);
+  EXPECT_EQ(report.remade_digest, report.server_digest);
+  EXPECT_EQ(findings_[0].ticks.back().frame.tick, 65u) << "nothing of the branch that goes on";
+  EXPECT_EQ(notices_.size(), 1u) << "its client is told";
+}
+
 }  // namespace
 }  // namespace cycloid::server

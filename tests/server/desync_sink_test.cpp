@@ -1,10 +1,15 @@
 #include <gmock/gmock.h>
 
+#include <cstdlib>
 #include <filesystem>
 #include <fstream>
+#include <set>
 #include <sstream>
+#include <thread>
 
 #include "server/desync/report_sink.hpp"
+#include "tests/server/kept_evidence.hpp"
+#include "tests/server/log_disks.hpp"
 #include "tests/server/room_fixture.hpp"
 
 namespace cycloid::server {
@@ -16,10 +21,9 @@ using testing::HasSubstr;
 class ReportSinkTest : public testing::Test {
  protected:
   void SetUp() override {
-    folder_ = fs::temp_directory_path() /
-              ("cycloid-sink-" + std::to_string(testing::UnitTest::GetInstance()->random_seed()) +
-               "-" + testing::UnitTest::GetInstance()->current_test_info()->name());
-    fs::remove_all(folder_);
+    std::string made = (fs::temp_directory_path() / "cycloid-sink-XXXXXX").string();
+    ASSERT_NE(::mkdtemp(made.data()), nullptr);
+    folder_ = made;
     auto identity = std::make_shared<RoomIdentity>();
     identity->room = "../a b";
     identity->scene = std::make_shared<const scenes::Scene>(two_seat_scene());
@@ -28,24 +32,24 @@ class ReportSinkTest : public testing::Test {
     finding_.room = identity;
     finding_.client = {5, "gu\x1b[2Jest", "their client", 1};
     scenes::Simulation simulation = simulation_of(*identity->scene);
-    History history({10, 256, 1 << 20});
-    history.start(simulation);
+    KeptEvidence evidence(10, simulation);
     for (std::uint64_t tick = 1; tick <= 40; ++tick) {
       protocol::InputFrame frame;
       frame.tick = tick;
       frame.seats = {{protocol::Origin::kGiven, push(100)}, {protocol::Origin::kRepeated, {}}};
       std::vector<scenes::SeatInput> inputs = {push(100), {}};
       ASSERT_TRUE(simulation.step(inputs).ok());
-      history.add(frame, simulation.digest(), simulation);
+      evidence.add(frame, simulation);
+      if (tick >= 17) finding_.ticks.push_back({frame, simulation.digest()});
       if (tick == 25) simulation.encode(finding_.client_state);
     }
     finding_.client_state[finding_.client_state.size() / 2] ^= std::byte{1};
     finding_.tick = 25;
     finding_.is_first = true;
     finding_.noticed_tick = 30;
-    finding_.server_digest = *history.digest(25);
-    finding_.start = history.before(25);
-    finding_.ticks = history.ticks(17, 40);
+    finding_.server_digest = *evidence.digest_at(25);
+    const auto start = evidence.state_at_or_before(24);
+    finding_.start = KeptState{start->tick(), start->digest(), {start, &start->bytes()}};
   }
   void TearDown() override { fs::remove_all(folder_); }
 
@@ -129,6 +133,68 @@ TEST_F(ReportSinkTest, SaysWhyThereIsNoLogOrNoReport) {
   ReportSink lost(nowhere);
   EXPECT_NE(lost.publish(finding_).error, "");
   EXPECT_EQ(lost.dropped(), 1u);
+}
+
+TEST_F(ReportSinkTest, ManyAtOnceWriteOneReportEach) {
+  ReportSinkOptions many = options();
+  many.reports_per_hour = 100;
+  ReportSink sink(many);
+  constexpr int kThreads = 4;
+  constexpr int kReports = 8;
+  std::vector<std::vector<std::string>> reports(kThreads);
+  std::vector<std::thread> threads;
+  for (int i = 0; i < kThreads; ++i) {
+    threads.emplace_back([&, i] {
+      for (int j = 0; j < kReports; ++j) reports[i].push_back(sink.publish(finding_).report);
+    });
+  }
+  for (std::thread& thread : threads) thread.join();
+  std::set<std::string> names;
+  for (const auto& of_thread : reports) names.insert(of_thread.begin(), of_thread.end());
+  EXPECT_EQ(names.size(), std::size_t{kThreads * kReports});
+  EXPECT_FALSE(names.contains("")) << "none was refused";
+  for (const std::string& name : names) {
+    std::string error;
+    const auto text = report_as_text(text_of(name), error);
+    ASSERT_TRUE(text) << name << ": " << error;
+    EXPECT_EQ(text_of(fs::path(name).replace_extension(".txt")), *text);
+    EXPECT_THAT(*text, HasSubstr(fs::path(name).stem().string() + ".cylog"));
+  }
+  EXPECT_EQ(files(".cylog"), std::size_t{kThreads * kReports});
+}
+
+TEST_F(ReportSinkTest, AReportThatDoesNotFitLeavesNothing) {
+  for (const int good : {0, 1, 2}) {
+    const auto disk = std::make_shared<ScriptedDisk>();
+    int writes = 0;
+    disk->on_write = [&](int file, std::span<const std::byte> bytes, std::size_t& written) {
+      return writes++ == good ? ENOSPC : system_disk()->write(file, bytes, written);
+    };
+    ReportSinkOptions full = options();
+    full.disk = disk;
+    ReportSink sink(full);
+    const auto written = sink.publish(finding_);
+    if (good == 0) {  // Of the log, which is not the report.
+      EXPECT_EQ(written.error, "");
+      EXPECT_THAT(text_of(written.report), HasSubstr("No space left on device"));
+      fs::remove(written.report);
+      fs::remove(fs::path(written.report).replace_extension(".txt"));
+      continue;
+    }
+    EXPECT_EQ(written.report, "");
+    EXPECT_THAT(written.error, HasSubstr(good == 1 ? ".json: No space left" : ".txt: No space"));
+    EXPECT_EQ(sink.dropped(), 1u);
+    EXPECT_TRUE(fs::is_empty(folder_)) << "after " << good << " files";
+  }
+}
+
+TEST_F(ReportSinkTest, WhatIsThereIsNeverWrittenOver) {
+  const fs::path there = folder_ / "desync-___a_b-tick-25-peer-5.cylog";
+  std::ofstream(there) << "of somebody else";
+  ReportSink sink(options());
+  const auto written = sink.publish(finding_);
+  EXPECT_EQ(fs::path(written.report).filename(), "desync-___a_b-tick-25-peer-5-2.json");
+  EXPECT_EQ(text_of(there), "of somebody else");
 }
 
 TEST(DesyncReportText, RefusesWhatIsNoReport) {

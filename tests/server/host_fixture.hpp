@@ -120,6 +120,18 @@ inline HostOptions quiet_host(HostLines& lines) {
   return options;
 }
 
+/// The same with a room "arena" that waits for its log's disk in every tick, which may hang.
+/// @param log  A path that nothing is at.
+inline HostOptions waiting_host(HostLines& lines, const std::string& log,
+                                const std::atomic<bool>& hangs) {
+  HostOptions options = quiet_host(lines);
+  options.disk = std::make_shared<HangingDisk>(hangs);
+  options.rooms.push_back({"arena", two_seat_settings()});
+  options.rooms[0].settings.log = log;
+  options.rooms[0].settings.log_sync = LogSync::kEveryTick;
+  return options;
+}
+
 /// A host that runs beside the test, and stops with it.
 class RunningHost {
  public:

@@ -83,7 +83,7 @@ TEST(Host, ThreeRoomsOnTwoThreadsKeepTheirClientsApart) {
 TEST(Host, TheFirstJoinMakesARoomThatEndsWhenItIsEmpty) {
   HostLines lines;
   HostOptions options = quiet_host(lines);
-  options.templates["duel"].settings.empty_ttl = 100ms;
+  options.templates["duel"].settings.empty_ttl = 1s;
   RunningHost server(std::move(options));
   {
     // Both come while the room is being made: one room, two seats.
@@ -136,8 +136,8 @@ TEST(Host, LockPauseResumeAndEndDoWhatTheySay) {
   EXPECT_EQ(server.act("arena", LifeAct::kPause).status, 409);
   ASSERT_TRUE(server.act("arena", LifeAct::kResume).ok());
   EXPECT_TRUE(eventually([&] { return room->meters().tick.get() > stood + 5; }));
-  // It goes on where it stood: what was missed is not made up for.
-  EXPECT_EQ(room->meters().slowed_ns.get(), 0u);
+  // It goes on where it stood: what was missed is told, and not made up for.
+  EXPECT_GE(room->meters().slowed_ns.get(), 130'000'000u);  // In whole ticks.
 
   ASSERT_TRUE(server.act("arena", LifeAct::kEnd).ok());
   const auto bye = peer.wait_for<protocol::Bye>();
@@ -247,12 +247,14 @@ TEST(Host, RoomsBeginAtDifferentPhases) {
     }
     return true;
   }));
-  std::set<std::int64_t> phases;
-  for (const auto& room : server.host().rooms()) {
-    const std::int64_t armed = room->meters().armed_ns;
-    phases.insert(armed % 16'666'667 * 16 / 16'666'667);
-  }
-  EXPECT_GE(phases.size(), 6u);  // Of eight, each in an eighth; a late one may share.
+  EXPECT_TRUE(eventually([&] {  // A room that is late is armed at once, out of its phase.
+    std::set<std::int64_t> phases;
+    for (const auto& room : server.host().rooms()) {
+      const std::int64_t armed = room->meters().armed_ns;
+      phases.insert(armed % 16'666'667 * 16 / 16'666'667);
+    }
+    return phases.size() >= 6u;  // Of eight, each in an eighth; a late one may share.
+  }));
 }
 
 TEST(Host, IdleConnectionsCostLittleAndHarmNobody) {
@@ -282,28 +284,24 @@ TEST(Host, IdleConnectionsCostLittleAndHarmNobody) {
   for (int i = 0; i < 30; ++i) ASSERT_TRUE(player.wait_for<protocol::InputFrame>());
   for (const int descriptor : idle) (void)::close(descriptor);
   EXPECT_TRUE(eventually([&] { return server.host().meters().pending.get() == 0; }));
-  EXPECT_EQ(server.host().meters().connections.get(), 1u);
+  EXPECT_TRUE(eventually([&] { return server.host().meters().connections.get() == 1; }));
 }
 
 TEST(Host, ADiskThatHangsIsSeenAsARoomThatIsStuck) {
   HostLines lines;
-  HostOptions options = quiet_host(lines);
   const std::string log =
       testing::TempDir() + "cycloid-stuck-" + std::to_string(::getpid()) + ".log";
   std::filesystem::remove(log);
   std::atomic<bool> hangs{false};
-  options.disk = std::make_shared<HangingDisk>(hangs);
-  options.rooms.push_back({"arena", two_seat_settings()});
-  options.rooms[0].settings.log = log;
-  options.rooms[0].settings.log_sync = LogSync::kEveryTick;
+  HostOptions options = waiting_host(lines, log, hangs);
   options.rooms.push_back({"other", two_seat_settings()});
   RunningHost server(std::move(options));
   const auto other = server.host().find("other");
   ASSERT_TRUE(eventually([&] { return other->meters().tick.get() > 3; }));
-  EXPECT_EQ(server.host().stuck(60), "");
+  EXPECT_TRUE(eventually([&] { return server.host().stuck(60).empty(); }));
   hangs = true;
-  EXPECT_TRUE(eventually([&] { return !server.host().stuck(6).empty(); }));
-  EXPECT_NE(server.host().stuck(6).find("arena"), std::string::npos);
+  EXPECT_TRUE(
+      eventually([&] { return server.host().stuck(6).find("arena") != std::string::npos; }));
   const std::uint64_t tick = other->meters().tick.get();
   EXPECT_TRUE(eventually([&] { return other->meters().tick.get() > tick + 5; }));
   hangs = false;

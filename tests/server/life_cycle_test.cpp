@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "server/host/room_clock.hpp"
+#include "server/room/pacer.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -107,24 +108,22 @@ TEST(RoomPhases, HoldWheneverARoomIsMade) {
   }
 }
 
-TEST(RoomClock, StandsStillWhilePausedAndKeepsItsPhase) {
-  constexpr std::int64_t kTick = 10;
-  RoomClock clock(1000);
-  EXPECT_EQ(clock.room_ns(900), 1000);
-  EXPECT_EQ(clock.room_ns(1234), 1234);
-  clock.pause(1234);
-  EXPECT_EQ(clock.room_ns(9999), 1234);
-  clock.resume(5001, kTick);
-  std::int64_t last = clock.room_ns(5001);
-  EXPECT_EQ(last, 1234);
-  for (std::int64_t now = 5001; now < 5100; ++now) {
-    EXPECT_GE(clock.room_ns(now), last);
-    last = clock.room_ns(now);
+TEST(RoomPauses, PutTheMatchOffByWholeTicks) {
+  constexpr std::int64_t kSecond = 1'000'000'000;
+  Pacer pacer(7 * kSecond, 60'000);
+  const std::int64_t tick = pacer.tick_ns();
+  const std::int64_t due = pacer.due_ns(100);
+  for (const std::int64_t stood_ns : {std::int64_t{0}, std::int64_t{1}, tick, tick + 1, kSecond}) {
+    const std::int64_t before = pacer.due_ns(100);
+    pacer.pause(8 * kSecond);
+    EXPECT_TRUE(pacer.paused());
+    const std::int64_t by_ns = pacer.resume(8 * kSecond + stood_ns);
+    EXPECT_FALSE(pacer.paused());
+    EXPECT_GE(by_ns, stood_ns);
+    EXPECT_LT(by_ns, stood_ns + tick);
+    EXPECT_EQ(pacer.due_ns(100), before + by_ns);
+    EXPECT_EQ((pacer.due_ns(100) - due) % tick, 0) << "the phase stays";
   }
-  EXPECT_GE(last, 1234 + 80);
-  // A deadline of the room lies a whole number of ticks later for the process.
-  EXPECT_EQ((clock.process_ns(2000) - 2000) % kTick, 0);
-  EXPECT_EQ(clock.room_ns(clock.process_ns(2000)), 2000);
 }
 
 }  // namespace

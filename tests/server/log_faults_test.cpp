@@ -27,6 +27,7 @@ class LogFaults : public testing::Test {
       writer.tick(numbered_tick(tick));
       if (writer.wants_keyframe(tick))
         writer.keyframe(tick, numbered_tick(tick).digest, std::vector<std::byte>(40));
+      writer.turn();
     }
     writer.close({ticks, numbered_tick(ticks).digest, {}});
   }
@@ -115,11 +116,30 @@ TEST_F(LogFaults, WithoutAThreadTheIntervalIsThatOfTheClockGiven) {
   for (std::uint64_t tick = 1; tick <= 60; ++tick) {
     now_ns_ += 16'666'667;
     writer.tick(numbered_tick(tick));
+    writer.turn();
   }
   EXPECT_EQ(disk_->syncs - before, 10);  // One second of ticks, every 100 ms.
-  EXPECT_EQ(writer.metrics().syncs, 10u);
-  EXPECT_EQ(writer.metrics().queue_bytes, 0u);
   EXPECT_EQ(protocol::read_log(disk_->files.at("log")).last_tick, 60u);
+}
+
+/// A state that can never fit beside others is no sign of a slow disk; several that wait are.
+TEST_F(LogFaults, ARecordLargerThanTheQueueDoesNotEndTheLog) {
+  LogWriterOptions small = options();
+  small.queue_bytes_max = 100;
+  LogWriter writer(small, {});
+  const std::vector<std::byte> state(500);
+  for (std::uint64_t tick = 1; tick <= 40; ++tick) {
+    writer.tick(numbered_tick(tick));
+    if (writer.wants_keyframe(tick)) writer.keyframe(tick, numbered_tick(tick).digest, state);
+    writer.turn();
+  }
+  EXPECT_TRUE(writer.durable()) << writer.error();
+  const protocol::LogSummary log = protocol::scan_log(disk_->files.at("log"));
+  EXPECT_EQ(log.last_tick, 40u);
+  EXPECT_EQ(log.keyframes.size(), 5u);
+  writer.keyframe(40, numbered_tick(40).digest, state);
+  writer.keyframe(40, numbered_tick(40).digest, state);
+  EXPECT_FALSE(writer.durable());
 }
 
 TEST_F(LogFaults, TheSameCallsWriteTheSameBytes) {

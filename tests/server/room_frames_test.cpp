@@ -57,6 +57,29 @@ TEST_F(RoomFrames, AllClientsHearTheSameFramesAndTheLogHasThem) {
   EXPECT_EQ(digests[1].digest, log_.ticks[119].digest);
 }
 
+/// A client of an earlier minor version has never heard of packed frames.
+TEST_F(RoomFrames, ArePackedForThoseWhoKnowThem) {
+  const PeerId knows = enter(0);
+  const PeerId elder = room_->connect();
+  protocol::Hello greeting = hello(1);
+  greeting.protocol_minor = 0;
+  say(elder, greeting);
+  (void)hear(elder);
+  run(1);
+  const auto size_of = [&](PeerId id) {
+    std::size_t bytes = 0;
+    for (const Shared& said : room_->take_output(id)) bytes += said->size();
+    return bytes;
+  };
+  const protocol::InputFrame& frame = log_.ticks.back().frame;
+  EXPECT_EQ(size_of(knows), protocol::encode_packed(frame).size());
+  EXPECT_EQ(size_of(elder), protocol::encode(protocol::ServerMessage(frame)).size());
+  run(60);
+  const auto heard = only<protocol::InputFrame>(hear(elder));
+  EXPECT_EQ(heard, only<protocol::InputFrame>(hear(knows)));
+  EXPECT_EQ(heard.size(), 60u);
+}
+
 TEST_F(RoomFrames, TheLogHasATickBeforeAnyClient) {
   const PeerId id = enter(0);
   bool heard_early = false;

@@ -250,6 +250,18 @@ TEST_F(RoomInputs, AFloodOfInputsIsRefusedAndNobodyElseNotices) {
   EXPECT_EQ(only<protocol::InputFrame>(hear(good)).size(), 3u);
 }
 
+TEST_F(RoomInputs, NewRatesAreOfThoseWhoAreThereToo) {
+  Limits limits;
+  open(limits);
+  const PeerId id = enter(0);
+  limits.messages_per_s = 5;
+  room_->set_limits(limits);
+  for (int i = 0; i < 10; ++i) say(id, protocol::Ping{1});
+  EXPECT_FALSE(room_->wants_close(id));
+  say(id, protocol::Ping{1});
+  EXPECT_EQ(refusal(id).reason, "more than 5 messages a second");
+}
+
 TEST_F(RoomInputs, MessagesAndBytesOfAConnectionAreRateLimited) {
   Limits limits;
   limits.messages_per_s = 100;

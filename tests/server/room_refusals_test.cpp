@@ -2,6 +2,7 @@
 
 #include <functional>
 
+#include "protocol/text.hpp"
 #include "tests/server/room_fixture.hpp"
 
 namespace cycloid::server {
@@ -20,7 +21,7 @@ class RoomRefusals : public RoomTest {
     const PeerId id = room_->connect();
     talk(id);
     const protocol::Refused refused = refusal(id);
-    EXPECT_EQ(refused.code, code) << refusal_name(refused.code);
+    EXPECT_EQ(refused.code, code) << protocol::refusal_name(refused.code);
     EXPECT_EQ(refused.reason, reason);
     room_->disconnect(id);
     EXPECT_EQ(count(Notice::Kind::kRefusal), 1);

@@ -68,6 +68,7 @@ TEST_F(RoomRewind, WhatIsNotKeptIsRefusedAndNothingChanges) {
   EXPECT_FALSE(room_->rewind(100)) << "it is there";
   EXPECT_FALSE(room_->rewind(101));
   EXPECT_FALSE(room_->rewind(60));
+  EXPECT_FALSE(room_->rewind(70)) << "its state is kept, but not the frame that made it";
   EXPECT_EQ(room_->tick(), 100u);
   EXPECT_EQ(room_->digest(), digest);
   EXPECT_TRUE(log_.branches.empty());
@@ -112,6 +113,112 @@ TEST_F(RoomRewind, IsTheSameMatchAgainWhereTheInputsAre) {
   ASSERT_TRUE(room_->rewind(77));
   play(78, 150);
   EXPECT_EQ(room_->digest(), digest);
+}
+
+TEST_F(RoomRewind, TheOldestTickIsTheFirstWhoseFrameIsKept) {
+  Limits limits;
+  limits.frames_kept_max = 30;
+  limits.keyframe_ticks = 10;
+  open(limits);
+  run(107);  // Keeps the frames from 78 on, and the states of 80, 90 and 100.
+  for (std::uint64_t tick = 69; tick < 80; ++tick) EXPECT_FALSE(room_->rewind(tick)) << tick;
+  ASSERT_TRUE(room_->rewind(80));
+  EXPECT_EQ(room_->digest(), log_.ticks[79].digest);
+  ASSERT_EQ(log_.branches.size(), 1u);
+  EXPECT_EQ(log_.branches[0].tick, 80u);
+}
+
+class RoomBranches : public RoomTest {
+ protected:
+  /// Plays, and lets the mirror hear; both branches have inputs of their own.
+  void play(PeerId id, std::uint64_t to, int force) {
+    while (room_->tick() < to) {
+      say(id, protocol::Input{room_->tick() + 1, push(force + static_cast<int>(room_->tick()))});
+      run(1);
+      mirror_->take(hear(id));
+    }
+  }
+  void open_with_mirror() {
+    resumable_ = true;
+    open();
+    mirror_.emplace(scene_);
+  }
+  /// Joins seat 0 and plays up to a tick.
+  PeerId player(std::uint64_t to) {
+    const PeerId id = join(0);
+    const auto greeting = hear(id);
+    secret_ = only<protocol::Welcome>(greeting)[0].resume;
+    mirror_->take(greeting);
+    play(id, to, 9000);
+    return id;
+  }
+  /// Comes back with the state that it had after a tick; what it is answered.
+  std::vector<protocol::ServerMessage> come_back(std::uint64_t tick) {
+    const PeerId id = room_->connect();
+    protocol::Hello greeting = hello(0);
+    greeting.resume = secret_;
+    say(id, greeting);
+    say(id, protocol::Ack{tick});
+    return hear(id);
+  }
+
+  std::optional<Mirror> mirror_;
+  std::vector<std::byte> secret_;
+};
+
+TEST_F(RoomBranches, ADigestOfATickThatWasTakenBackIsNoDesync) {
+  open_with_mirror();
+  const PeerId id = player(200);
+  ASSERT_TRUE(room_->rewind(190));
+  const auto on_its_way = hear(id);  // The client has not heard of it yet.
+  run(20);
+  ASSERT_NE(log_.ticks[209].digest, mirror_->digests[200]) << "tick 200 of the new branch differs";
+  say(id, protocol::Digest{200, mirror_->digests[200]});
+  EXPECT_EQ(room_->statistics().desyncs, 0u);
+  EXPECT_FALSE(room_->wants_close(id));
+
+  mirror_->take(on_its_way);
+  play(id, 230, 100);
+  say(id, protocol::Digest{230, mirror_->digests[230]});
+  EXPECT_EQ(room_->statistics().desyncs, 0u);
+  say(id, protocol::Digest{201, 0xbad});
+  EXPECT_EQ(room_->statistics().desyncs, 1u) << "what was never taken back is compared as ever";
+}
+
+TEST_F(RoomBranches, WhoComesBackWithATickThatWasTakenBackIsGivenTheState) {
+  for (const std::uint64_t lost : {120u, 150u}) {
+    open_with_mirror();
+    const PeerId id = player(lost);
+    room_->disconnect(id);
+    run(160 - static_cast<int>(lost));
+    ASSERT_TRUE(room_->rewind(130));
+    run(170);
+    const auto messages = come_back(lost);
+    const bool has_state = !only<protocol::SnapshotPart>(messages).empty();
+    EXPECT_EQ(has_state, lost > 130) << "tick " << lost;
+    mirror_->take(messages);
+    EXPECT_EQ(mirror_->simulation.tick(), 300u);
+    EXPECT_EQ(mirror_->simulation.digest(), room_->digest()) << "lost after tick " << lost;
+  }
+}
+
+TEST_F(RoomBranches, NoSnapshotDiffersFromAStateThatWasTakenBack) {
+  open();
+  const PeerId id = enter(protocol::kSpectator, protocol::Mode::kSnapshot);
+  run(150);
+  (void)hear(id);
+  ASSERT_TRUE(room_->rewind(130));
+  (void)hear(id);
+  run(23);
+  EXPECT_EQ(only<protocol::StateDelta>(hear(id)).back().tick, 153u);
+  say(id, protocol::Ack{150});  // Said before it had heard of the rewind.
+  run(3);
+  const auto deltas = only<protocol::StateDelta>(hear(id));
+  ASSERT_EQ(deltas.size(), 1u);
+  EXPECT_NE(deltas[0].baseline_tick, 150u);
+  say(id, protocol::Ack{156});
+  run(3);
+  EXPECT_EQ(only<protocol::StateDelta>(hear(id))[0].baseline_tick, 156u);
 }
 
 TEST_F(RoomRewind, KeyframesGoToALogThatWantsThem) {
@@ -225,6 +332,34 @@ TEST_F(RoomDelayed, ARewindIsShownOnlyToWhoHasSeenWhatItTookBack) {
   mirror.take(hear(behind));
   EXPECT_EQ(mirror.simulation.tick(), 110u);
   EXPECT_EQ(mirror.states, 1u);
+}
+
+TEST_F(RoomDelayed, ADigestThatARewindOvertookIsNoMistake) {
+  open_delayed(20);
+  const PeerId id = enter(protocol::kSpectator);
+  run(100);
+  (void)hear(id);
+  ASSERT_TRUE(room_->rewind(90));
+  say(id, protocol::Digest{80, log_.ticks[79].digest});
+  EXPECT_FALSE(room_->wants_close(id)) << "it had seen that tick";
+  say(id, protocol::Digest{81, 0xbad});
+  EXPECT_TRUE(room_->wants_close(id)) << "and never that one";
+}
+
+TEST_F(RoomDelayed, ADigestOfAPlayerWhoLooksOnSinceIsNoMistake) {
+  RoomOptions options;
+  options.spectator_delay_ticks = 50;
+  options.slow = SlowPeer::kSpectate;
+  options.limits.slow_ticks_max = 5;
+  open_with(options);
+  const PeerId id = enter(0);
+  say(id, protocol::Input{1, push(1)});
+  run(10);
+  ASSERT_EQ(room_->seats()[0].state, SeatState::kFree);
+  say(id, protocol::Digest{5, log_.ticks[4].digest});
+  EXPECT_FALSE(room_->wants_close(id)) << "it saw that tick as a player";
+  say(id, protocol::Digest{11, 0xbad});
+  EXPECT_EQ(refusal(id).code, protocol::Refusal::kBadMessage);
 }
 
 }  // namespace

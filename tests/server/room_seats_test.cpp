@@ -154,6 +154,31 @@ TEST_F(RoomSeats, APausedMatchStandsStillAndGoesOnWithoutHurry) {
   EXPECT_EQ(room_->statistics().catch_up_ticks, 0u);
 }
 
+TEST_F(RoomSeats, InAPauseNobodyTimesOutAndRatesGoOn) {
+  Limits limits;
+  limits.messages_per_s = 5;
+  open(limits);
+  const PeerId id = enter(0);
+  run(3);
+  room_->pause("dinner");
+  now_ += 60'000'000'000;
+  run(1);
+  EXPECT_FALSE(room_->wants_close(id)) << "it has nothing to say while nothing happens";
+  for (int i = 0; i < 40; ++i, now_ += 250'000'000) {
+    say(id, protocol::Ping{7});
+    run(1);
+    ASSERT_EQ(only<protocol::Pong>(hear(id)).size(), 1u) << i;
+  }
+  now_ += 60'000'000'000;
+  const std::int64_t due = room_->next_deadline_ns();
+  room_->resume();
+  EXPECT_GE(room_->statistics().slowed_ns, 130'000'000'000u) << "and that it stood still is said";
+  EXPECT_NE(room_->next_deadline_ns(), due);
+  run(5);
+  EXPECT_EQ(room_->tick(), 8u);
+  EXPECT_FALSE(room_->wants_close(id));
+}
+
 TEST_F(RoomSeats, ALostSeatWaitsToTheTickAndThenIsFree) {
   open(one_second_to_resume());
   const PeerId id = enter(0);

@@ -152,7 +152,7 @@ TEST_F(TlsPeers, ReloadingTheCertificateDropsNobody) {
 
 TEST_F(TlsPeers, AHandshakeThatNeverEndsIsCutAtTheDeadlineWhateverBytesCome) {
   const ServerTls server(files());
-  handshake_time_ = std::chrono::milliseconds(300);
+  handshake_time_ = std::chrono::milliseconds(1000);
   for (const bool drips : {false, true}) {
     SCOPED_TRACE(drips);
     Handshake shaken;
@@ -183,9 +183,9 @@ TEST_F(TlsPeers, AHandshakeThatNeverEndsIsCutAtTheDeadlineWhateverBytesCome) {
     run();
     const auto took = std::chrono::steady_clock::now() - begin;
     EXPECT_EQ(shaken.end, Handshake::End::kOverdue) << shaken.reason;
-    EXPECT_GE(took, std::chrono::milliseconds(300));
-    EXPECT_LT(took, std::chrono::seconds(4));
-    EXPECT_EQ(dripped > 9, drips);
+    EXPECT_GE(took, std::chrono::milliseconds(1000));
+    EXPECT_LT(took, std::chrono::seconds(10));
+    EXPECT_EQ(dripped > 2, drips) << "what comes in does not put the deadline off";
   }
 }
 

@@ -31,6 +31,8 @@ const PlantCase kPlants[] = {
     {Plant::kSnapshotWithoutImpulses, {Invariant::kDigests, Invariant::kHonesty}},
     {Plant::kLogDropsRecord, {Invariant::kLog}},
     {Plant::kLogSwapsRecords, {Invariant::kLog}},
+    {Plant::kLogForgetsSync, {Invariant::kLog}},
+    {Plant::kLogSpoilsKeyframe, {Invariant::kLog}},
 };
 
 class SimPlants : public testing::TestWithParam<PlantCase> {};

@@ -2,8 +2,8 @@
 
 #include "solver/queries/casting.hpp"
 #include "solver/queries/query.hpp"
-#include "tests/solver/query_fixture.hpp"
 #include "tests/solver/query_3d_fixture.hpp"
+#include "tests/solver/query_fixture.hpp"
 
 namespace cycloid::solver {
 
@@ -20,7 +20,7 @@ static WorldState<3> state_of(const std::vector<std::pair<Shape<3>, Pose<3>>>& p
     Shape<3> owned = shape;
     owned.body = static_cast<std::uint32_t>(state.bodies.size());
     state.bodies.push_back(body);
-    state.shapes.push_back(owned);
+    state.shapes.edit([&](auto& shapes) { shapes.push_back(owned); });
   }
   return state;
 }

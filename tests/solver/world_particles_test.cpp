@@ -87,8 +87,11 @@ TEST(WorldParticles, TruncatedBytesAndBrokenReferencesAreRefused) {
     from.encode(encoded);
     EXPECT_FALSE(other.decode(encoded).ok()) << what;
   };
-  refuses("link to nowhere", [](auto& s) { s.links[0].particle_b = 77; });
-  refuses("link to itself", [](auto& s) { s.links[0].particle_b = s.links[0].particle_a; });
+  refuses("link to nowhere",
+          [](auto& s) { s.links.edit([](auto& links) { links[0].particle_b = 77; }); });
+  refuses("link to itself", [](auto& s) {
+    s.links.edit([](auto& links) { links[0].particle_b = links[0].particle_a; });
+  });
   refuses("pin to nobody", [](auto& s) { s.pins[0].body = 77; });
   refuses("no radius", [](auto& s) { s.particles[0].radius = 0.0f; });
   refuses("no such material", [](auto& s) { s.particles[0].material = 9; });

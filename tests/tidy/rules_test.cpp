@@ -58,7 +58,9 @@ static const std::vector<Rule>& rules() {
        {"x = std::floor(a);", "i = std::lround(a);", "x = std::ldexp(a, 2);"},
        "x = std::midpoint(a, b); clog(a);",
        true},
-      {R"(__builtin_(?!sqrtf\b)\w+|__sync_\w+|__atomic_\w+)",
+      // Moving lanes, cutting them to whole numbers and asking for instructions are exact.
+      {R"(__builtin_(?!(sqrtf|shufflevector|convertvector|cpu_supports)\b)\w+|)"
+       R"(__sync_\w+|__atomic_\w+)",
        "a compiler's own function differs between compilers: C++, or Lanes<W> for wide arithmetic",
        {"x = __builtin_sinf(a);", "x = __builtin_sqrt(a);", "__builtin_prefetch(p);"},
        "x = __builtin_sqrtf(a);",
@@ -123,7 +125,9 @@ static const std::vector<Rule>& rules() {
       {R"(\bdouble\b)",
        "the state is float, and double rounds twice: float",
        {"double x;", "long double x;", "std::vector<double> v;"},
-       "redouble(x);"},
+       "redouble(x);",
+       false,
+       "solver/direct/wide.hpp"},
       {R"(\bvolatile\b)",
        "it orders nothing: std::atomic in solver/workers.*",
        {"volatile int x;"},

@@ -1,5 +1,6 @@
 #!/usr/bin/env python3
-"""Reads compiled objects: no fused multiply-add, no estimate, nothing imported outside a list.
+"""Reads compiled objects: no fused multiply-add, no estimate, nothing imported outside a list, and
+no name shared with a unit that only some processors can run.
 
     objects.py [--objdump PROGRAM] [--nm PROGRAM] [--imports FILE | --instructions-only] FILE...
 
@@ -33,6 +34,14 @@ X87_EXACT = (re.compile(r"json_(reader|writer)\.cpp\.o"), re.compile(r"fadds +\S
 POWERPC_TABLE = re.compile(r"\.long 0xffff[0-9a-f]{4}|fn?m(add|sub)s? f31,f31,f\d+,f31")
 
 
+# Units compiled for processors that have AVX2, and what every name that they define holds: the width
+# of their lanes (kAvx2Lanes). Of two copies of an inline function the linker keeps one for everybody.
+AVX2_UNIT = re.compile(r".*_avx2(\.cpp)?\.o(bj)?")
+AVX2_NAME = re.compile(r".*(\b264\b|Li264E).*")  # As nm demangles it, or as it could not.
+# Where solver/CMakeLists.txt compiles them so. Everywhere else the unit is there, and never called.
+AVX2_FORMAT = "elf64-x86-64"
+
+
 class CannotJudge(Exception):
     """Nothing was found because nothing was read."""
 
@@ -44,6 +53,7 @@ class Instruction:
     member: str  # Of the archive: "step.cpp.o"; the file itself where it is no archive.
     function: str
     text: str
+    file_format: str  # As objdump names it.
     processor: Processor
 
 
@@ -89,10 +99,11 @@ def output_of(command: list[str]) -> str:
 
 def instructions(disassembly: str) -> Iterator[Instruction]:
     """Every instruction that objdump prints, with the function and the object around it."""
-    member, function, processor, in_table = "", "", None, False
+    member, function, file_format, processor, in_table = "", "", "", None, False
     for line in disassembly.splitlines():
         if match := re.match(r"(\S.*):\s+file format (\S+)", line):
-            member, processor = Path(match[1]).name, processor_of(match[2].lower())
+            member, file_format = Path(match[1]).name, match[2].lower()
+            processor = processor_of(file_format)
             if processor is None:
                 raise CannotJudge(f"{match[1]}: no list of instructions for {match[2]}")
         elif match := re.match(r"[0-9a-f]+ <(.*)>:$", line):
@@ -107,7 +118,7 @@ def instructions(disassembly: str) -> Iterator[Instruction]:
             if in_table:
                 continue
             in_table = words[0] == "bctr"
-            yield Instruction(member, function, " ".join(words), processor)
+            yield Instruction(member, function, " ".join(words), file_format, processor)
 
 
 def is_exact_x87(one: Instruction, reason: str) -> bool:
@@ -116,9 +127,11 @@ def is_exact_x87(one: Instruction, reason: str) -> bool:
 
 
 def forbidden_instructions(disassembly: str) -> tuple[list[str], int]:
-    """One line for each forbidden instruction; and how many instructions were read."""
+    """One line for each forbidden instruction, and each unit for AVX2 that was compiled without it;
+    and how many instructions were read."""
     findings: list[str] = []
     count = 0
+    is_wide: dict[str, bool] = {}
     known: dict[tuple[str, str], str] = {}
     for one in instructions(disassembly):
         count += 1
@@ -127,6 +140,10 @@ def forbidden_instructions(disassembly: str) -> tuple[list[str], int]:
             known[key] = why_forbidden(one.processor, one.text)
         if known[key] and not is_exact_x87(one, known[key]):
             findings.append(f"{one.member}: {one.function}: {one.text}\n  {known[key]}")
+        if AVX2_UNIT.fullmatch(one.member) and one.file_format == AVX2_FORMAT:
+            is_wide[one.member] = is_wide.get(one.member, False) or "%ymm" in one.text
+    findings += [f"{member}: holds no instruction of 256 bits\n  compile it with -mavx2, or nothing "
+                 "of it is worth choosing" for member, wide in is_wide.items() if not wide]
     return findings, count
 
 
@@ -165,6 +182,29 @@ def foreign_imports(listings: Iterable[tuple[str, str]], imports: Imports) -> li
     ]
 
 
+def shared_names(listings: Iterable[tuple[str, str]]) -> list[str]:
+    """One line for each name of a unit for AVX2 that another unit could use by accident."""
+    definitions = [
+        (member, name)
+        for file, listing in listings
+        for member, name, is_defined in names_by_member(listing, file)
+        if is_defined
+    ]
+    of_avx2 = {name for member, name in definitions if AVX2_UNIT.fullmatch(member)}
+    reason = "it would run on processors without AVX2; inline it always, or give it the width 264"
+    findings = [
+        f"{member}: defines {name}\n  {reason}"
+        for member, name in definitions
+        if AVX2_UNIT.fullmatch(member) and not AVX2_NAME.fullmatch(name)
+    ]
+    findings += [
+        f"{member}: defines {name}\n  so does a unit for AVX2, which passes lanes in other registers"
+        for member, name in definitions
+        if not AVX2_UNIT.fullmatch(member) and name in of_avx2
+    ]
+    return findings
+
+
 def judge(arguments: argparse.Namespace) -> tuple[list[str], str]:
     """All findings, and a sentence on what was read."""
     findings: list[str] = []
@@ -181,7 +221,8 @@ def judge(arguments: argparse.Namespace) -> tuple[list[str], str]:
         return findings, summary
     imports = read_imports(Path(arguments.imports).read_text(encoding="utf-8"))
     listings = [(file, output_of([arguments.nm, "-A", "-C", file])) for file in arguments.files]
-    return findings + foreign_imports(listings, imports), summary + ", and all imports"
+    findings += foreign_imports(listings, imports) + shared_names(listings)
+    return findings, summary + ", and all imports"
 
 
 def main(words: list[str]) -> int:

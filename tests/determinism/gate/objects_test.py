@@ -65,8 +65,8 @@ class Planted(unittest.TestCase):
         self.addCleanup(folder.cleanup)
         self.folder = Path(folder.name)
 
-    def compile(self, text: str, *flags: str) -> str:
-        source, target = self.folder / "planted.cpp", self.folder / "planted.o"
+    def compile(self, text: str, *flags: str, name: str = "planted") -> str:
+        source, target = self.folder / f"{name}.cpp", self.folder / f"{name}.o"
         source.write_text(text, encoding="utf-8")
         command = [CXX, "-std=c++20", "-O2", *flags, "-c", str(source), "-o", str(target)]
         subprocess.run(command, check=True)
@@ -98,6 +98,34 @@ class Objects(Planted):
     def test_an_estimate_is_found(self) -> None:
         text = 'float f(float a) { asm("rsqrtss %0, %0" : "+x"(a)); return a; }'
         self.expect(self.compile(text), 1, "planted.o: f(float): rsqrtss", "estimate")
+
+    @unittest.skipUnless(X86, "only x86 has units for AVX2")
+    def test_names_of_units_for_avx2_hold_their_width_and_are_theirs_alone(self) -> None:
+        kernel = """template <int W> struct K {
+          static int f(int a) { asm("vaddps %ymm0, %ymm0, %ymm0"); return a; }
+        };
+        """
+        wide = kernel + "template struct K<264>;\n"
+        shared = "inline int g(int a) { return a; }\nauto* used = &g;\n"
+        own = self.compile(wide, name="kernels_avx2")
+        self.expect(own, 0)
+        self.expect(self.compile(wide + shared, name="more_avx2"), 1, "more_avx2.o: defines g(int)")
+        other = self.compile(wide)
+        status, text = self.gate(own, other)
+        self.assertEqual(status, 1, text)
+        self.assertIn("planted.o: defines K<264>::f(int)", text)
+        narrow = self.compile(kernel + "template struct K<8>;\n" + shared)
+        self.assertEqual(self.gate(own, narrow)[0], 0)
+
+    @unittest.skipUnless(X86, "only x86 has units for AVX2")
+    def test_a_unit_for_avx2_without_an_instruction_of_it_is_found(self) -> None:
+        text = "template <int W> struct K { static int f(int a) { return a; } };\ntemplate struct K<264>;"
+        self.expect(self.compile(text, name="kernels_avx2"), 1, "kernels_avx2.o: holds no instruction")
+
+    def test_a_unit_for_avx2_is_an_ordinary_one_where_it_is_not_compiled_for_avx2(self) -> None:
+        for file_format, findings in (("elf64-x86-64", 1), ("pe-x86-64", 0), ("elf64-littleaarch64", 0)):
+            text = f"kernels_avx2.cpp.o:     file format {file_format}\n00000000 <f>:\n  88:\tret\n"
+            self.assertEqual(len(objects.forbidden_instructions(text)[0]), findings, file_format)
 
     @unittest.skipUnless(X86, "only x86 has an x87")
     def test_x87_is_found(self) -> None:

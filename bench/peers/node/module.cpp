@@ -1,0 +1,121 @@
+// Our solver as a WebAssembly module that a page or Node calls: worlds by number, scenes as JSON,
+// and the ruler for the poses of any engine. Built by the toolchains of WebAssembly alone.
+
+#include <cstdlib>
+#include <cstring>
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "bench/peers/accuracy.hpp"
+#include "scenes/build.hpp"
+#include "scenes/simulation.hpp"
+
+namespace {
+
+namespace peers = cycloid::peers;
+namespace scenes = cycloid::scenes;
+namespace solver = cycloid::solver;
+
+std::vector<char> buffer;  ///< What the caller writes: JSON, or poses as floats.
+std::vector<std::optional<scenes::Simulation>> simulations;
+std::optional<scenes::Simulation> reference;  ///< The ruler's scene, at tick 0.
+peers::Accuracy measured;
+
+/// Where the caller says its bodies are: x, y, z and a quaternion each, of the frames of bodies.
+template <int D>
+solver::Pose<D> told_pose(const solver::WorldState<D>& state, std::uint32_t body) {
+  float values[7];
+  std::memcpy(values, buffer.data() + sizeof values * body, sizeof values);
+  solver::Pose<D> pose;
+  for (int i = 0; i < D; ++i) pose.position[i] = values[i];
+  if constexpr (solver::Dim<D>::kRotation == 2)
+    pose.rotation = {{values[6] * values[6] - values[5] * values[5], 2.0f * values[5] * values[6]}};
+  else
+    pose.rotation = {{values[3], values[4], values[5], values[6]}};
+  pose.position += rotate(pose.rotation, state.bodies[body].local_center);
+  return pose;
+}
+
+template <int D>
+peers::Accuracy accuracy_of(const solver::WorldState<D>& state) {
+  return peers::measure_accuracy<D>(state,
+                                    [&](std::uint32_t body) { return told_pose(state, body); });
+}
+
+std::optional<scenes::Simulation> simulation_of(std::size_t bytes) {
+  const scenes::Loaded loaded = scenes::from_json(std::string_view(buffer.data(), bytes));
+  if (!loaded.scene) return std::nullopt;
+  auto created = scenes::Simulation::create(*loaded.scene);
+  if (!created.ok()) return std::nullopt;
+  return std::move(created.value());
+}
+
+}  // namespace
+
+extern "C" {
+
+// There are no exceptions here: what would throw ends the module, and its caller sees a trap.
+void* __cxa_allocate_exception(std::size_t bytes) noexcept {
+  return std::malloc(bytes);
+}
+[[noreturn]] void __cxa_throw(void*, void*, void (*)(void*)) {
+  std::abort();
+}
+
+/// Memory of at least so many bytes to write to; what was there before is gone.
+__attribute__((export_name("buffer"))) char* module_buffer(std::size_t bytes) {
+  buffer.resize(bytes);
+  return buffer.data();
+}
+
+/// A world of the scene whose JSON the buffer holds: its number, or -1 where that is no scene.
+__attribute__((export_name("create"))) int module_create(std::size_t bytes) {
+  auto made = simulation_of(bytes);
+  if (!made) return -1;
+  simulations.push_back(std::move(made));
+  return static_cast<int>(simulations.size()) - 1;
+}
+
+__attribute__((export_name("destroy"))) void module_destroy(int world) {
+  simulations[static_cast<std::size_t>(world)].reset();
+}
+
+/// One tick of a scene without seats; 0, or 1 where the world refuses.
+__attribute__((export_name("step"))) int module_step(int world) {
+  return simulations[static_cast<std::size_t>(world)]->step({}).ok() ? 0 : 1;
+}
+
+__attribute__((export_name("digest"))) std::uint64_t module_digest(int world) {
+  return simulations[static_cast<std::size_t>(world)]->digest();
+}
+
+/// Writes the poses of all bodies to the buffer, in their order; returns how many there are.
+__attribute__((export_name("poses"))) std::size_t module_poses(int world) {
+  const std::vector<scenes::Pose> poses = simulations[static_cast<std::size_t>(world)]->poses();
+  buffer.resize(poses.size() * 7 * sizeof(float));
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    std::memcpy(buffer.data() + 28 * i, poses[i].position.data(), 12);
+    std::memcpy(buffer.data() + 28 * i + 12, poses[i].rotation.data(), 16);
+  }
+  return poses.size();
+}
+
+/// Takes the scene of the buffer as that which the ruler measures; 0, or 1 where it is none.
+__attribute__((export_name("rule"))) int module_rule(std::size_t bytes) {
+  reference = simulation_of(bytes);
+  return reference ? 0 : 1;
+}
+
+/// Measures the poses in the buffer: the deepest overlap, m, or -1 where a body is nowhere.
+__attribute__((export_name("overlap"))) float module_overlap() {
+  measured = reference->dimension() == 3 ? accuracy_of(reference->spatial()->state())
+                                         : accuracy_of(reference->planar()->state());
+  return measured.finite ? measured.overlap_m : -1.0f;
+}
+
+/// The widest gap of a joint at the last `overlap`, m.
+__attribute__((export_name("gap"))) float module_gap() {
+  return measured.gap_m;
+}
+}

@@ -1,0 +1,11 @@
+#pragma once
+
+#include "bench/peers/engine.hpp"
+
+namespace cycloid::peers {
+
+/// Our own solver. Null, with the mistake or the field in `why`, where the scene is not good.
+template <int D>
+std::unique_ptr<Engine<D>> make_our_world(const EngineInput<D>& input, std::string& why);
+
+}  // namespace cycloid::peers

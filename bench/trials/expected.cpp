@@ -1,0 +1,75 @@
+#include "bench/trials/expected.hpp"
+
+#include <sstream>
+
+#include "bench/trials/judges.hpp"
+#include "bench/trials/methods.hpp"
+
+namespace cycloid::trials {
+
+bool read_expected(std::string_view text, ExpectedTable& table, std::string& mistake) {
+  ExpectedTable read;
+  std::istringstream lines{std::string(text)};
+  std::string line;
+  for (int number = 1; std::getline(lines, line); ++number) {
+    if (line.empty() || line[0] == '#') continue;
+    std::istringstream words(line);
+    std::string trial;
+    std::string method;
+    std::string outcome;
+    words >> trial >> method >> std::ws;
+    std::getline(words, outcome);
+    const bool whole = !trial.empty() && !method.empty() && !outcome.empty();
+    if (whole && read.emplace(std::pair(trial, method), outcome).second) continue;
+    mistake = "line " + std::to_string(number) +
+              (whole ? ": said twice" : ": not of the form 'trial method outcome'");
+    return false;
+  }
+  table = std::move(read);
+  return true;
+}
+
+std::string expected_text(const ExpectedTable& table) {
+  std::string text =
+      "# trial, method, verdict, number: written by `cycloid trials --write`; docs/stability.md\n";
+  for (const scenes::Trial& trial : scenes::trials())
+    for (const Method& method : methods()) {
+      const auto found = table.find({trial.name, method.name});
+      if (found == table.end()) continue;
+      text += std::string(trial.name) + " " + method.name + " " + found->second + "\n";
+    }
+  return text;
+}
+
+/// "sags 0.123" as a cell: the number, and how it looks.
+static std::string cell(const std::string& outcome) {
+  const std::size_t space = outcome.find(' ');
+  const std::string verdict = outcome.substr(0, space);
+  const std::string number = space == std::string::npos ? "-" : outcome.substr(space + 1);
+  if (verdict == "stands") return "**" + number + "**";
+  return verdict == "sags" ? number : "x " + number;
+}
+
+std::string expected_markdown(const ExpectedTable& table) {
+  std::string text = "| row | trial | number |";
+  std::string rule = "|---|---|---|";
+  for (const Method& method : methods()) {
+    text += std::string(" ") + method.name + " |";
+    rule += "---|";
+  }
+  text += "\n" + rule + "\n";
+  for (const scenes::Trial& trial : scenes::trials()) {
+    std::string cells;
+    for (const Method& method : methods()) {
+      const auto found = table.find({trial.name, method.name});
+      if (found != table.end()) cells += " " + cell(found->second) + " |";
+    }
+    if (cells.empty()) continue;
+    const std::string name = std::string(trial.name).substr(sizeof "trial-" - 1);
+    text += "| " + std::to_string(trial.row) + " | " + name + " | " + judge_of(trial).metric +
+            " |" + cells + "\n";
+  }
+  return text;
+}
+
+}  // namespace cycloid::trials

@@ -1,0 +1,25 @@
+#pragma once
+
+#include <map>
+#include <string>
+#include <string_view>
+#include <utility>
+
+namespace cycloid::trials {
+
+/// What every trial came to under every method when somebody last looked: by trial and method, the
+/// text of the outcome ("sags 0.123").
+using ExpectedTable = std::map<std::pair<std::string, std::string>, std::string>;
+
+/// Reads lines of "trial method outcome". @returns false, and sets `mistake` to the line and what
+/// is wrong with it, leaving `table` as it was.
+bool read_expected(std::string_view text, ExpectedTable& table, std::string& mistake);
+
+/// The same lines, in the order of `scenes::trials()` and `methods()`; trials that the table lacks
+/// are left out.
+std::string expected_text(const ExpectedTable& table);
+
+/// Rows of trials, columns of methods, for docs/stability.md.
+std::string expected_markdown(const ExpectedTable& table);
+
+}  // namespace cycloid::trials

@@ -1,0 +1,222 @@
+#include "bench/tuning/choose.hpp"
+
+#include <algorithm>
+#include <array>
+#include <limits>
+#include <utility>
+
+#include "bench/tuning/asked_error.hpp"
+#include "bench/tuning/passage.hpp"
+#include "scenes/accuracy.hpp"
+
+namespace cycloid::tuning {
+namespace {
+
+constexpr std::uint32_t kFinestSubsteps = 32;
+/// Of a typical body's size: a body that ends further away than this is in another place.
+constexpr double kElsewhereOfSize = 0.1;
+constexpr std::array<const char*, 3> kFinestMethods = {"soft-step", "tgs-ngs", "soft-direct"};
+
+Passage run_with(const scenes::Scene& scene, const accuracy::Setting& setting,
+                 std::uint32_t ticks) {
+  return run_passage(accuracy::with_setting(scene, setting), ticks);
+}
+
+/// Whether something besides gravity may bring energy in: a seat, a motor, a spring, what moves
+/// come what may.
+bool gives_energy(const scenes::Scene& scene) {
+  bool gives = !scene.characters.empty();
+  for (const scenes::Seat& seat : scene.seats) gives = gives || !seat.script.empty();
+  for (const scenes::SceneBody& body : scene.bodies)
+    gives = gives || body.kind == solver::BodyKind::kKinematic;
+  for (const scenes::SceneJoint& joint : scene.joints) {
+    const bool pulls =
+        joint.kind == solver::JointKind::kMotor || joint.kind == solver::JointKind::kTarget;
+    const bool springs = joint.hertz > 0.0f || joint.angular_hertz > 0.0f;
+    gives = gives || pulls || springs || joint.motor != solver::MotorKind::kOff;
+  }
+  return gives;
+}
+
+/// Tries settings of one scene against one finest run.
+class Chooser {
+ public:
+  Chooser(const scenes::Scene& scene, const TuneRequest& request)
+      : request_(request), subject_{as_tried(scene, request.error_m), request.ticks, nullptr} {
+    options_.direct_rows_max = 0;  // The reference's errors are not asked for.
+  }
+
+  FinestRun find_finest() {
+    double least_m = std::numeric_limits<double>::infinity();
+    for (const char* method : kFinestMethods) {
+      accuracy::Setting setting = accuracy::published(method);
+      setting.substeps = kFinestSubsteps;
+      accuracy::Setting half = setting;
+      half.substeps /= 2;
+      Passage fine = run_with(subject_.scene, setting, request_.ticks);
+      const Passage coarser = run_with(subject_.scene, half, request_.ticks);
+      if (!fine.ended || !coarser.ended) continue;
+      const double spread_m = distance_at_end_m(fine, coarser);
+      const accuracy::Measured measured = accuracy::measure(subject_, setting, options_);
+      const double doubt_m = spread_m + accuracy::position_error_m(measured);
+      if (!(doubt_m < least_m)) continue;
+      least_m = doubt_m;
+      finest_ = {true, accuracy::name_of(setting), spread_m, 0.0, measured.metrics.energy_gained_j};
+      finest_passage_ = std::move(fine);
+    }
+    finest_.tolerance_m = std::max({kElsewhereOfSize * typical_size_m(subject_.scene),
+                                    2.0 * finest_.spread_m, request_.error_m});
+    if (!gives_energy(subject_.scene)) {
+      energy_max_j_ = finest_.energy_gained_j;
+      for (const MovingBody& body : finest_passage_.bodies)
+        energy_max_j_ += body.weight_n * request_.error_m;
+    }
+    return finest_;
+  }
+
+  Tried try_one(const accuracy::Setting& setting) const {
+    Tried tried;
+    tried.measured = accuracy::measure(subject_, setting, options_);
+    tried.tuning = accuracy::tuning_of(setting, subject_.scene.tuning);
+    const Passage passage = run_with(subject_.scene, setting, request_.ticks);
+    tried.digest = passage.digest;
+    if (!tried.measured.ended || !passage.ended) return tried;
+    tried.measured.price.ns_per_tick = accuracy::time_ticks(subject_, setting, options_);
+    tried.error_m = accuracy::position_error_m(tried.measured);
+    if (tried.error_m <= request_.error_m && subject_.scene.tuning.sleep_s > 0.0f) {
+      // What falls asleep before it has settled stays as wrong as it is.
+      accuracy::MeasureOptions as_it_runs = options_;
+      as_it_runs.sleep = true;
+      tried.error_m =
+          std::max(tried.error_m,
+                   accuracy::position_error_m(accuracy::measure(subject_, setting, as_it_runs)));
+    }
+    if (finest_.known) tried.moved_m = distance_at_end_m(finest_passage_, passage);
+    tried.verdict = judge(tried);
+    return tried;
+  }
+
+  /// Sweeps over the constraints in a tick.
+  std::uint64_t nominal_cost(const accuracy::Setting& setting) const {
+    const solver::Tuning tuning = accuracy::tuning_of(setting, subject_.scene.tuning);
+    return std::uint64_t{tuning.substeps} *
+           (tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps);
+  }
+
+ private:
+  TriedVerdict judge(const Tried& tried) const {
+    if (!(tried.error_m <= request_.error_m)) return TriedVerdict::kTooCoarse;
+    if (finest_.known && !(tried.measured.metrics.energy_gained_j <= energy_max_j_))
+      return TriedVerdict::kGainsEnergy;
+    if (finest_.known && !(tried.moved_m <= finest_.tolerance_m)) return TriedVerdict::kElsewhere;
+    const bool slow =
+        request_.budget_us && tried.measured.price.ns_per_tick > 1.0e3 * *request_.budget_us;
+    return slow ? TriedVerdict::kTooSlow : TriedVerdict::kMeets;
+  }
+
+  const TuneRequest& request_;
+  accuracy::Subject subject_;
+  accuracy::MeasureOptions options_;
+  FinestRun finest_;
+  Passage finest_passage_;
+  double energy_max_j_ = std::numeric_limits<double>::infinity();
+};
+
+/// By key, and of equals as they were.
+template <class T, class Key>
+std::vector<T> in_order_of(const std::vector<T>& unsorted, const Key& key) {
+  std::vector<std::size_t> order(unsorted.size());
+  for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+  // Total order: no place is there twice.
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return std::pair(key(unsorted[a]), a) < std::pair(key(unsorted[b]), b);
+  });
+  std::vector<T> sorted;
+  for (const std::size_t place : order) sorted.push_back(unsorted[place]);
+  return sorted;
+}
+
+std::vector<accuracy::Setting> in_order_of_sweeps(const Chooser& chooser,
+                                                  const TuneRequest& request) {
+  accuracy::GridLists lists = request.lists;
+  const accuracy::GridLists usual = usual_lists();
+  if (lists.substeps.empty()) lists.substeps = usual.substeps;
+  if (lists.sweeps.empty()) lists.sweeps = usual.sweeps;
+  if (lists.relax_sweeps.empty()) lists.relax_sweeps = usual.relax_sweeps;
+  const std::vector<accuracy::Setting> settings = accuracy::grid(lists);
+  return in_order_of<accuracy::Setting>(
+      settings, [&](const accuracy::Setting& setting) { return chooser.nominal_cost(setting); });
+}
+
+/// How far a setting is from what is asked for; of two the nearer has the less.
+std::pair<std::uint32_t, double> distance_from(const Tried& tried) {
+  // What is too slow is right; what is too coarse is right but for the size of its errors.
+  const bool slow = tried.verdict == TriedVerdict::kTooSlow;
+  return {static_cast<std::uint32_t>(tried.verdict),
+          slow ? tried.measured.price.ns_per_tick : tried.error_m};
+}
+
+}  // namespace
+
+const char* name_of(TriedVerdict verdict) {
+  switch (verdict) {
+    case TriedVerdict::kMeets:
+      return "meets";
+    case TriedVerdict::kTooSlow:
+      return "too slow";
+    case TriedVerdict::kTooCoarse:
+      return "too coarse";
+    case TriedVerdict::kGainsEnergy:
+      return "gains energy";
+    case TriedVerdict::kElsewhere:
+      return "elsewhere";
+    case TriedVerdict::kFaulted:
+      return "faulted";
+  }
+  return "unknown";
+}
+
+scenes::Scene as_tried(scenes::Scene scene, double error_m) {
+  scene.tuning = scenes::tuning_of(scene);
+  scene.accuracy = {};
+  scene.tuning.slop = std::min(scene.tuning.slop, static_cast<float>(0.5 * error_m));
+  return scene;
+}
+
+accuracy::GridLists usual_lists() {
+  return {{}, {1, 2, 4, 8, 16}, {1, 2, 4, 8}, {0, 1}};
+}
+
+TuneResult choose(const scenes::Scene& scene, const TuneRequest& request) {
+  Chooser chooser(scene, request);
+  TuneResult result;
+  const std::vector<accuracy::Setting> settings = in_order_of_sweeps(chooser, request);
+  if (request.progress) request.progress(0, settings.size());
+  result.finest = chooser.find_finest();
+  std::uint64_t bound = std::numeric_limits<std::uint64_t>::max();
+  for (const accuracy::Setting& setting : settings) {
+    const std::uint64_t cost = chooser.nominal_cost(setting);
+    if (2 * cost > bound) break;
+    if (request.progress) request.progress(result.tried.size(), settings.size());
+    result.tried.push_back(chooser.try_one(setting));
+    if (result.tried.back().verdict == TriedVerdict::kMeets) bound = std::min(bound, 3 * cost);
+  }
+  result.tried = in_order_of<Tried>(result.tried, [](const Tried& tried) {
+    return std::pair(tried.measured.price.rows_per_tick, tried.error_m);
+  });
+  for (std::size_t i = 0; i < result.tried.size(); ++i) {
+    if (result.tried[i].verdict == TriedVerdict::kMeets && !result.chosen) result.chosen = i;
+    if (distance_from(result.tried[i]) < distance_from(result.tried[result.nearest]))
+      result.nearest = i;
+  }
+  return result;
+}
+
+Tried try_setting(const scenes::Scene& scene, const TuneRequest& request,
+                  const accuracy::Setting& setting) {
+  Chooser chooser(scene, request);
+  chooser.find_finest();
+  return chooser.try_one(setting);
+}
+
+}  // namespace cycloid::tuning

@@ -1,0 +1,48 @@
+#pragma once
+
+#include "solver/constraints/contact.hpp"
+
+namespace cycloid::solver {
+
+/// The blocks of a range and the motions that they gather: what every kernel works on. No two of
+/// the blocks share a body that moves.
+template <int D, int W>
+struct BlockRange {
+  ContactBlock<D, W>* begin;
+  ContactBlock<D, W>* end;
+  Motion<D>* motions;   ///< By body slot.
+  std::uint32_t poses;  ///< StepScratch::poses.
+};
+
+/// What is done to contacts in lanes, compiled for each width: contact_kernels.cpp and
+/// contact_kernels_avx2.cpp, from one text (contact_sweeps.hpp). Units of other files only call.
+template <int D, int W>
+struct ContactKernels {
+  /// What follows from the numbers of each lane once they are there: tangents, effective masses,
+  /// shares, softness, and the coefficient of friction, whose square stands in its place.
+  static void complete(const StepContext<D>& context, const BlockRange<D, W>& range);
+  /// Normal, arms and separation of pairs of balls at the present poses (follow_round).
+  static void follow(const BlockRange<D, W>& range);
+  /// Effective masses once more in the lanes where `wanted` is not 0: of bodies whose inertia has
+  /// turned.
+  static void weigh(const float (&wanted)[kLaneCount<W>], ContactBlock<D, W>& block);
+  /// No point has bounced in this substep yet.
+  static void forget_bounces(const BlockRange<D, W>& range);
+  /// One sweep of collisions; sets ContactBlock::bounced.
+  static void bounce(const StepContext<D>& context, const BlockRange<D, W>& range);
+  /// v += M^-1 J^T lambda.
+  static void warm_start(const BlockRange<D, W>& range);
+  /// One sweep of sequential impulses.
+  static void sweep(const StepContext<D>& context, Sweep kind, const BlockRange<D, W>& range);
+  /// One sweep on positions (correct_contact).
+  static void correct(const StepContext<D>& context, const BlockRange<D, W>& range);
+  /// XPBD's position pass, with the motions before the substep, and its velocity pass.
+  static void project(const StepContext<D>& context, const Motion<D>* before,
+                      const BlockRange<D, W>& range);
+  static void rub(const StepContext<D>& context, const BlockRange<D, W>& range);
+};
+
+/// Whether this processor and this build have the kernels of kAvx2Lanes.
+bool has_avx2_kernels();
+
+}  // namespace cycloid::solver

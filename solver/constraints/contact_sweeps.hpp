@@ -1,0 +1,176 @@
+#pragma once
+
+#include "solver/constraints/contact_kernels.hpp"
+#include "solver/constraints/contact_lanes.hpp"
+#include "solver/constraints/contact_position.hpp"
+#include "solver/constraints/contact_round.hpp"
+#include "solver/constraints/restitution.hpp"
+
+namespace cycloid::solver {
+
+/// The text of the kernels, for the files that compile them and no others. A function that is
+/// called here is a template on W or always inlined, so that those compiled for one instruction set
+/// have names of their own.
+
+/// Velocities of both bodies; also their poses, and from them the arms, where positions have moved
+/// since.
+template <int D, int W>
+[[gnu::always_inline]] inline void gather_pair(const BlockRange<D, W>& range,
+                                               ContactBlock<D, W>& block, MotionLanes<D, W>& a,
+                                               MotionLanes<D, W>& b) {
+  if (block.placed == range.poses) {
+    gather_quads<kVelocityQuads<D>>(range.motions, block.body_a, a);
+    gather_quads<kVelocityQuads<D>>(range.motions, block.body_b, b);
+    return;
+  }
+  gather_quads<kPoseQuads<D>>(range.motions, block.body_a, a);
+  gather_quads<kPoseQuads<D>>(range.motions, block.body_b, b);
+  place(block, a, b);
+  block.placed = range.poses;
+}
+
+template <int D, int W>
+[[gnu::always_inline]] inline void scatter_pair(const BlockRange<D, W>& range,
+                                                const ContactBlock<D, W>& block,
+                                                MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  scatter(a, block.moves_a, block.body_a, range.motions);
+  scatter(b, block.moves_b, block.body_b, range.motions);
+}
+
+/// Unused lanes keep their zeros.
+template <int D, int W>
+[[gnu::always_inline]] inline void soften(const StepContext<D>& context,
+                                          ContactBlock<D, W>& block) {
+  using L = Lanes<W>;
+  const auto used = block.points[0].normal_mass > L(0.0f);
+  const auto b_moves = block.mass_b.inverse_mass > L(0.0f);
+  const auto a_moves = block.mass_a.inverse_mass > L(0.0f);
+  const auto of_pair = [&](float both, float one) {
+    return select(used, select(a_moves, select(b_moves, L(both), L(one)), L(one)), L(0.0f));
+  };
+  block.bias_rate = of_pair(context.contact.bias_rate, context.contact_static.bias_rate);
+  block.mass_scale = of_pair(context.contact.mass_scale, context.contact_static.mass_scale);
+  block.impulse_scale =
+      of_pair(context.contact.impulse_scale, context.contact_static.impulse_scale);
+  const L sum = block.mass_a.inverse_mass + block.mass_b.inverse_mass;
+  block.share_b = select(used, block.mass_b.inverse_mass / select(used, sum, L(1.0f)), L(0.0f));
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::complete(const StepContext<D>& context, const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    soften(context, *block);
+    block->friction = sqrt(block->friction);
+    tangents(block->normal, block->tangent);
+    set_effective_masses(Lanes<W>(1.0f), *block);
+  }
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::follow(const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    if (block->follows) follow_round(*block, range.motions);
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::weigh(const float (&wanted)[kLaneCount<W>], ContactBlock<D, W>& block) {
+  set_effective_masses(Lanes<W>::load(wanted), block);
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::forget_bounces(const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    for (std::uint32_t i = 0; i < block->point_count; ++i)
+      block->points[i].bounce_impulse = Lanes<W>(0.0f);
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::bounce(const StepContext<D>& context, const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    block->bounced = bounce_block(context, *block, range.motions);
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::warm_start(const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    MotionLanes<D, W> a;
+    MotionLanes<D, W> b;
+    gather_pair(range, *block, a, b);
+    warm_start_points(*block, a, b);
+    scatter_pair(range, *block, a, b);
+  }
+}
+
+/// Blocks of the plain rows: each point's normal, then each point's friction.
+template <Sweep kSweep, int D, int W>
+[[gnu::always_inline]] inline void sweep_plain(const StepContext<D>& context,
+                                               const BlockRange<D, W>& range,
+                                               ContactBlock<D, W>& block) {
+  MotionLanes<D, W> a;
+  MotionLanes<D, W> b;
+  gather_pair(range, block, a, b);
+  for (std::uint32_t i = 0; i < block.point_count; ++i)
+    solve_normal(context, kSweep, block, block.points[i], a, b);
+  if (block.rubs)
+    for (std::uint32_t i = 0; i < block.point_count; ++i)
+      solve_friction(context, block, block.points[i], block.points[i].arms, a, b);
+  scatter_pair(range, block, a, b);
+}
+
+/// Every other block. Apart, because its calls would keep the motions of all blocks in memory.
+template <int D, int W>
+[[gnu::noinline]] void sweep_any(const StepContext<D>& context, Sweep kind,
+                                 const BlockRange<D, W>& range, ContactBlock<D, W>& block) {
+  MotionLanes<D, W> a;
+  MotionLanes<D, W> b;
+  gather_pair(range, block, a, b);
+  solve_block(context, kind, block, a, b);
+  scatter_pair(range, block, a, b);
+}
+
+template <Sweep kSweep, int D, int W>
+void sweep_blocks(const StepContext<D>& context, const BlockRange<D, W>& range) {
+  const ContactBlockRows together = context.tuning.contact_block;
+  const bool apart = together == ContactBlockRows::kNone || together == ContactBlockRows::kIsland;
+  const bool plain = kSweep != Sweep::kPseudo && apart;
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    if (plain && !block->rolls)
+      sweep_plain<kSweep>(context, range, *block);
+    else
+      sweep_any(context, kSweep, range, *block);
+  }
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::sweep(const StepContext<D>& context, Sweep kind,
+                                 const BlockRange<D, W>& range) {
+  switch (kind) {
+    case Sweep::kBiased:
+      return sweep_blocks<Sweep::kBiased>(context, range);
+    case Sweep::kRelax:
+      return sweep_blocks<Sweep::kRelax>(context, range);
+    case Sweep::kPseudo:
+      return sweep_blocks<Sweep::kPseudo>(context, range);
+  }
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::correct(const StepContext<D>& context, const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    correct_contact(context, *block, range.motions);
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::project(const StepContext<D>& context, const Motion<D>* before,
+                                   const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    project_contact(context, *block, before, range.motions);
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::rub(const StepContext<D>& context, const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    rub_projected_contact(context, *block, range.motions);
+}
+
+}  // namespace cycloid::solver

@@ -1,0 +1,13 @@
+#include "solver/constraints/contact_kernels.hpp"
+
+namespace cycloid::solver {
+
+bool has_avx2_kernels() {
+#ifdef CYCLOID_AVX2  // Set by solver/CMakeLists.txt where contact_kernels_avx2.cpp has the flag.
+  return __builtin_cpu_supports("avx2") != 0;
+#else
+  return false;
+#endif
+}
+
+}  // namespace cycloid::solver

@@ -1,0 +1,133 @@
+#pragma once
+
+#include <cstdint>
+#include <cstring>
+
+#include "solver/lanes.hpp"
+
+namespace cycloid::solver {
+
+/// Records of floats into lanes and back, four floats (a quad) of each record at a time: loads and
+/// shuffles, where float by float each lane would pass through memory. Nothing here computes.
+
+/// The body or contact in each lane. A plain array, because kernels of one instruction set may not
+/// share a function with those of another, not even operator[].
+template <int W>
+using LaneIndices = std::uint32_t[kLaneCount<W>];
+
+/// A bit for each lane.
+using LaneBits = std::uint32_t;
+template <int W>
+inline constexpr LaneBits kAllLanes = (LaneBits{1} << kLaneCount<W>)-1;
+
+using Quad = RawLanes<4>::Float;
+using QuadPair = RawLanes<8>::Float;
+
+/// Four rows of four become four columns.
+[[gnu::always_inline]] inline void transpose(Quad (&q)[4]) {
+  const Quad low_01 = __builtin_shufflevector(q[0], q[1], 0, 4, 1, 5);
+  const Quad high_01 = __builtin_shufflevector(q[0], q[1], 2, 6, 3, 7);
+  const Quad low_23 = __builtin_shufflevector(q[2], q[3], 0, 4, 1, 5);
+  const Quad high_23 = __builtin_shufflevector(q[2], q[3], 2, 6, 3, 7);
+  q[0] = __builtin_shufflevector(low_01, low_23, 0, 1, 4, 5);
+  q[1] = __builtin_shufflevector(low_01, low_23, 2, 3, 6, 7);
+  q[2] = __builtin_shufflevector(high_01, high_23, 0, 1, 4, 5);
+  q[3] = __builtin_shufflevector(high_01, high_23, 2, 3, 6, 7);
+}
+/// The same in both halves.
+[[gnu::always_inline]] inline void transpose(QuadPair (&q)[4]) {
+  const QuadPair low_01 = __builtin_shufflevector(q[0], q[1], 0, 8, 1, 9, 4, 12, 5, 13);
+  const QuadPair high_01 = __builtin_shufflevector(q[0], q[1], 2, 10, 3, 11, 6, 14, 7, 15);
+  const QuadPair low_23 = __builtin_shufflevector(q[2], q[3], 0, 8, 1, 9, 4, 12, 5, 13);
+  const QuadPair high_23 = __builtin_shufflevector(q[2], q[3], 2, 10, 3, 11, 6, 14, 7, 15);
+  q[0] = __builtin_shufflevector(low_01, low_23, 0, 1, 8, 9, 4, 5, 12, 13);
+  q[1] = __builtin_shufflevector(low_01, low_23, 2, 3, 10, 11, 6, 7, 14, 15);
+  q[2] = __builtin_shufflevector(high_01, high_23, 0, 1, 8, 9, 4, 5, 12, 13);
+  q[3] = __builtin_shufflevector(high_01, high_23, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+template <class Value, class Record>
+[[gnu::always_inline]] inline Value load_quad_as(const Record& record, int quad) {
+  Value loaded;
+  static_assert(sizeof loaded == sizeof(Quad));
+  const void* bytes = &record;
+  std::memcpy(&loaded, static_cast<const char*>(bytes) + sizeof loaded * quad, sizeof loaded);
+  return loaded;
+}
+template <class Record>
+[[gnu::always_inline]] inline Quad load_quad(const Record& record, int quad) {
+  return load_quad_as<Quad>(record, quad);
+}
+template <class Record>
+[[gnu::always_inline]] inline void store_quad(const Quad& from, int quad, Record& record) {
+  void* bytes = &record;
+  std::memcpy(static_cast<char*>(bytes) + sizeof from * quad, &from, sizeof from);
+}
+
+/// Floats [4 quad, 4 quad + 4) of the records that the lanes name.
+template <int W, class Record>
+[[gnu::always_inline]] inline void gather_columns(const Record* records,
+                                                  const LaneIndices<W>& index, int quad,
+                                                  Lanes<W> (&columns)[4]) {
+  if constexpr (W == 1) {
+    struct Row {
+      float value[4];
+    };
+    const Row row = load_quad_as<Row>(records[index[0]], quad);
+    for (int i = 0; i < 4; ++i) columns[i] = Lanes<W>::load(&row.value[i]);
+  } else if constexpr (W == kAvx2Lanes) {
+    QuadPair rows[4];
+    for (int r = 0; r < 4; ++r) {
+      const Quad low = load_quad(records[index[r]], quad);
+      const Quad high = load_quad(records[index[r + 4]], quad);
+      rows[r] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
+    }
+    transpose(rows);
+    for (int i = 0; i < 4; ++i) columns[i].raw = rows[i];
+  } else {
+    float column[4][W];
+    for (int at = 0; at < W; at += 4) {
+      Quad rows[4];
+      for (int r = 0; r < 4; ++r) rows[r] = load_quad(records[index[at + r]], quad);
+      transpose(rows);
+      for (int i = 0; i < 4; ++i) std::memcpy(&column[i][at], &rows[i], sizeof rows[i]);
+    }
+    for (int i = 0; i < 4; ++i) std::memcpy(&columns[i].raw, column[i], sizeof columns[i].raw);
+  }
+}
+
+/// The same back into the records of the lanes in `wanted`.
+template <int W, class Record>
+[[gnu::always_inline]] inline void scatter_columns(const Lanes<W> (&columns)[4], LaneBits wanted,
+                                                   int quad, const LaneIndices<W>& index,
+                                                   Record* records) {
+  Quad rows[kLaneCount<W>];
+  if constexpr (W == 1) {
+    for (int i = 0; i < 4; ++i) rows[0][i] = columns[i].raw[0];
+  } else if constexpr (W == kAvx2Lanes) {
+    QuadPair pairs[4] = {columns[0].raw, columns[1].raw, columns[2].raw, columns[3].raw};
+    transpose(pairs);
+    for (int r = 0; r < 4; ++r) {
+      rows[r] = __builtin_shufflevector(pairs[r], pairs[r], 0, 1, 2, 3);
+      rows[r + 4] = __builtin_shufflevector(pairs[r], pairs[r], 4, 5, 6, 7);
+    }
+  } else {
+    float column[4][W];
+    for (int i = 0; i < 4; ++i) std::memcpy(column[i], &columns[i].raw, sizeof columns[i].raw);
+    for (int at = 0; at < W; at += 4) {
+      Quad quads[4];
+      for (int i = 0; i < 4; ++i) std::memcpy(&quads[i], &column[i][at], sizeof quads[i]);
+      transpose(quads);
+      for (int r = 0; r < 4; ++r) rows[at + r] = quads[r];
+    }
+  }
+  if (wanted == kAllLanes<W>) {
+    for (int lane = 0; lane < kLaneCount<W>; ++lane)
+      store_quad(rows[lane], quad, records[index[lane]]);
+    return;
+  }
+  for (int lane = 0; lane < kLaneCount<W>; ++lane)
+    if ((wanted >> lane & 1u) != 0) store_quad(rows[lane], quad, records[index[lane]]);
+}
+
+}  // namespace cycloid::solver

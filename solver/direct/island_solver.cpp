@@ -1,0 +1,220 @@
+#include <algorithm>
+
+#include "solver/direct/island_parts.hpp"
+
+namespace cycloid::solver {
+
+/// Solves more after which what would pull or slide is let go, before the last is taken.
+static constexpr int kPasses = 4;
+/// Times that a solve is tried whose step fell short, each from where the last one led.
+static constexpr int kRounds = 3;
+/// A step this near to the whole is one.
+static constexpr Wide kWholeStep = 0.999;
+
+/// Whether the tangents' natural impulses are within what the friction of the normal's holds.
+template <int D>
+static bool would_stick(float friction, const IslandRow<D>* normal) {
+  Wide square = 0.0;
+  for (int t = 1; t <= Dim<D>::kTangents; ++t) {
+    const Wide natural = normal[t].impulse - static_cast<Wide>(normal[t].mass) * normal[t].missing;
+    square += natural * natural;
+  }
+  const Wide bound = static_cast<Wide>(friction) * normal->impulse;
+  return square < bound * bound;
+}
+
+/// Whether no row misses more than the tolerance, as seen by the natural map.
+template <int D>
+bool IslandSolver<D>::rests(const Island& island, Wide tolerance) const {
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for (int r = 0; r < group.count; ++r) {
+      if (magnitude(row[r].overlap) > tolerance) return false;
+      Wide missing = magnitude(row[r].missing);
+      if (missing <= tolerance) continue;
+      if (!group.is_contact) return false;
+      const auto mass = static_cast<Wide>(row[r].mass);
+      if (r == 0) {
+        if (row[0].missing > 0.0) missing = std::min(missing, row[0].impulse / mass);
+      } else if (!would_stick<D>(group.friction, row)) {
+        continue;  // It slides, which sweeps do.
+      }
+      if (missing > tolerance) return false;
+    }
+  }
+  return true;
+}
+
+/// How much of the contacts' first guess is worth having, from 0 to 1: after a blow the impulses of
+/// the substep before are those of the blow. Leaves in `momentum_` the velocities that they are of.
+template <int D>
+Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    momentum_[static_cast<std::size_t>(n)] = Vector::zero();
+  Wide work_done = 0.0;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    if (!group.is_contact) continue;
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      if (row.impulse == 0.0) continue;
+      push(group, row, row.impulse, momentum_);
+      work_done += row.impulse * row.missing;
+    }
+  }
+  Wide energy = 0.0;
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    Vector& momentum = momentum_[static_cast<std::size_t>(n)];
+    const Vector velocity = answer_to<D>(momentum, masses[body_of[static_cast<std::size_t>(n)]]);
+    energy += dot(momentum, velocity);
+    momentum = velocity;
+  }
+  constexpr Wide kMuch = 0.1;  // Less than a tenth off is as good as it gets between substeps.
+  if (!(energy > 0.0) || !(work_done > kMuch * energy)) return 1.0;
+  return std::max(1.0 - work_done / energy, 0.0);
+}
+
+/// Takes the rest of the first guess back.
+template <int D>
+void IslandSolver<D>::weaken_guess(const Island& island, Wide share) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    Vector& velocity = momentum_[static_cast<std::size_t>(n)];
+    for (int i = 0; i < kFreedoms; ++i) {
+      velocity[i] = (share - 1.0) * velocity[i];
+      change[static_cast<std::size_t>(n)][i] += velocity[i];
+    }
+  }
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      row.missing += along(group, row, momentum_);
+      if (group.is_contact) row.impulse = share * row.impulse;
+    }
+  }
+}
+
+/// Which rows are equalities, by the natural map.
+template <int D>
+void IslandSolver<D>::choose(const Island& island) {
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    if (!group.is_contact) {
+      for (int r = 0; r < group.count; ++r) row[r].holds = true;
+      continue;
+    }
+    row[0].holds = row[0].impulse - static_cast<Wide>(row[0].mass) * row[0].missing > 0.0;
+    const bool rubs = row[0].holds && group.friction > 0.0f;
+    // What has not pushed yet has no bound to compare with: it may well stick.
+    const bool sticks = rubs && (row[0].impulse == 0.0 || would_stick<D>(group.friction, row));
+    for (int t = 1; t < group.count; ++t) row[t].holds = sticks;
+  }
+}
+
+/// Lets go of what would pull or slide after this solve. @returns whether there was any.
+template <int D>
+bool IslandSolver<D>::let_go(const Island& island) {
+  constexpr Wide kSlack = 1.0001;
+  bool any = false;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for (int r = 0; r < group.count; ++r)
+      row[r].change = row[r].holds ? -static_cast<Wide>(row[r].stiffness) *
+                                         (row[r].missing + along(group, row[r], solution_))
+                                   : 0.0;
+    if (!group.is_contact || !row[0].holds) continue;
+    const Wide normal = row[0].impulse + row[0].change;
+    const Wide square = square_of_tangents(group, row);
+    const Wide bound = kSlack * static_cast<Wide>(group.friction) * std::max(normal, 0.0);
+    if (normal < 0.0) row[0].holds = false;
+    const bool slides = group.count > 1 && row[1].holds && square > bound * bound;
+    if (normal < 0.0 || slides)
+      for (int t = 1; t < group.count; ++t) row[t].holds = false;
+    any = any || normal < 0.0 || slides;
+  }
+  return any;
+}
+
+/// Speeds that take overlap away from positions and stay in no velocity; what holds stays together.
+template <int D>
+void IslandSolver<D>::correct_positions(const Island& island) {
+  bool any = false;
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    correction[static_cast<std::size_t>(n)] = Vector::zero();
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    const IslandRow<D>& row = rows[static_cast<std::size_t>(group.first)];
+    if (!row.holds || row.overlap == 0.0) continue;
+    any = true;
+    push(group, row, -static_cast<Wide>(row.stiffness) * row.overlap, correction);
+  }
+  if (any) matrix.solve(island.steps, correction);
+}
+
+/// The most that any row of a joint misses, m/s or rad/s.
+template <int D>
+Wide IslandSolver<D>::most_missing(const Island& island) const {
+  Wide most = 0.0;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    if (group.is_contact) continue;
+    for (int r = group.first; r < group.first + group.count; ++r)
+      most = std::max(most, magnitude(rows[static_cast<std::size_t>(r)].missing));
+  }
+  return most;
+}
+
+/// Joints that miss what they hold, after a solve, contradict each other or the contacts; their
+/// impulses would grow with every substep, so the next one starts without any.
+template <int D>
+void IslandSolver<D>::forget_conflict(const Island& island) {
+  constexpr Wide kConflict = 0.1;  // m/s or rad/s; what is solvable misses a thousandth.
+  if (!(most_missing(island) > kConflict)) return;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r)
+      rows[static_cast<std::size_t>(r)].impulse = 0.0;
+  }
+}
+
+template <int D>
+Solved IslandSolver<D>::solve(const Island& island, std::span<const BodyMass<D>> masses,
+                              std::span<const Motion<D>> motions, Wide tolerance) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    change[static_cast<std::size_t>(n)] = Vector::zero();
+    correction[static_cast<std::size_t>(n)] = Vector::zero();
+  }
+  if (island.groups.begin == island.groups.end || rests(island, tolerance)) {
+    ++work.rests;
+    return Solved::kAlready;
+  }
+  solution_.resize(body_of.size());
+  momentum_.resize(body_of.size());
+  if (const Wide share = worth_of_guess(island, masses); share < 1.0) weaken_guess(island, share);
+  Wide step = 0.0;
+  for (int round = 0; round < kRounds && step < kWholeStep; ++round) {
+    choose(island);
+    for (int pass = 0; pass <= kPasses; ++pass) {
+      assemble(island, masses, motions);
+      matrix.factor(island.steps);
+      matrix.solve(island.steps, solution_);
+      ++work.factors;
+      work.products += static_cast<std::uint64_t>(island.products);
+      if (!let_go(island) || pass == kPasses) break;
+    }
+    step = take(island, masses);
+  }
+  correct_positions(island);
+  forget_conflict(island);
+  return step < kWholeStep ? Solved::kPartly : Solved::kWhole;
+}
+
+template Solved IslandSolver<2>::solve(const Island&, std::span<const BodyMass<2>>,
+                                       std::span<const Motion<2>>, Wide);
+template Solved IslandSolver<3>::solve(const Island&, std::span<const BodyMass<3>>,
+                                       std::span<const Motion<3>>, Wide);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,151 @@
+#pragma once
+
+#include "solver/direct/body_matrix.hpp"
+#include "solver/motion.hpp"
+
+namespace cycloid::solver {
+
+/// One scalar row of an island: Cdot = a . v_a + b . v_b, of nodes instead of bodies.
+template <int D>
+struct IslandRow {
+  static constexpr int kFreedoms = Dim<D>::kFreedoms;
+  float a[kFreedoms];  ///< Linear, then angular; 0 where the node is -1 or cannot turn.
+  float b[kFreedoms];
+  Wide missing;     ///< Cdot plus the bias: what the row wants gone, m/s or rad/s.
+  Wide impulse;     ///< Accumulated, N s or N m s.
+  Wide change;      ///< Of the impulse, by the solve under way.
+  Wide overlap;     ///< Speed at which the position is to be corrected, m/s: below 0 apart.
+  float mass;       ///< Of the row alone, as the sweeps use it.
+  float stiffness;  ///< Momentum per speed that it holds with: the island's, or its inertia.
+  bool holds;       ///< It is an equality of the present solve.
+};
+
+/// Rows that are bounded together: of a contact point its normal, then its tangents, whose length
+/// is held to friction times the normal; of a joint its equalities.
+template <int D>
+struct IslandRows {
+  int node_a;  ///< -1: a body that does not move.
+  int node_b;
+  int pair;  ///< BodyMatrix::beside of the two; -1 where one does not move.
+  int first;
+  int count;
+  bool is_contact;
+  float friction;
+};
+
+/// Torque by which the force of a joint answers to a turn of a body, as an impulse: what makes it
+/// swing, taken implicitly. Acts about all axes but `along`.
+template <int D>
+struct IslandTension {
+  int node;
+  float stiffness;  ///< kg m^2, above 0.
+  Vec<D> along;     ///< Unit; in the plane the only axis is across it.
+};
+
+/// Counts of what `IslandSolver` has done since the tick began, the same on every machine.
+struct IslandWork {
+  std::uint64_t factors = 0;
+  std::uint64_t products = 0;  ///< Of blocks, in those.
+  std::uint64_t rests = 0;     ///< Islands that the warm start had solved already.
+};
+
+/// What came of an island's solve.
+enum class Solved {
+  kAlready,  ///< By the warm start.
+  kWhole,
+  kPartly,  ///< What was guessed to hold does not; sweeps have the rest to do.
+};
+
+/// Solves all contacts and joints of an island at once: of what pushes and sticks it makes
+/// equalities, solves them with the stiffness of springs that the island's heaviest body can stand
+/// on, and lets go of what would pull or slide.
+///
+/// A Newton method on the natural map: a normal row holds where impulse - mass * missing > 0, its
+/// tangents where their natural impulse is inside the cone. The solve is
+///   (M + J^T W J) dv = -J^T W missing,  dlambda = -W (missing + J dv),
+/// proximal in dlambda, so that no load sags; what comes out is held to its bounds and taken as far
+/// as it lessens 1/2 lambda^T A lambda + b^T lambda. No step makes that grow, so it adds no energy,
+/// whatever the guess was. Sweeps go on from there.
+/// Source: Silcowitz-Hansen, Niebe, Erleben, "Projected Gauss-Seidel Subspace Minimization Method
+/// for Interactive Rigid Body Dynamics" (GRAPP 2010); tension: Tournier et al., "Stable Constrained
+/// Dynamics" (SIGGRAPH 2015).
+template <int D>
+class IslandSolver {
+ public:
+  static constexpr int kFreedoms = Dim<D>::kFreedoms;
+  using Vector = typename BodyMatrix<D>::Vector;
+
+  /// A group of bodies, joined by rows, that is solved by itself.
+  struct Island {
+    Range nodes;
+    Range steps;
+    Range groups;
+    Range tensions;
+    int products;   ///< Of blocks, that factoring takes.
+    int pairs;      ///< Contacts and joints.
+    float mass;     ///< Of the heaviest body, kg.
+    float inertia;  ///< The greatest, kg m^2.
+  };
+
+  /// Where the rows of a group come from.
+  struct Source {
+    int place;  ///< Block of contacts, or row of joints.
+    int lane;   ///< Of the block; -1: it is a joint.
+    int point;
+  };
+
+  /// How an island is solved; as long as the pairs of nodes stay as they are.
+  struct Plan {
+    bool taken;  ///< False: it would cost too much, and is left to the sweeps.
+    Range steps;
+    int products;
+  };
+
+  BodyMatrix<D> matrix;
+  std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.
+  std::vector<std::pair<int, int>> pairs_before;
+  std::vector<int> beside;  ///< By pair: BodyMatrix::beside.
+  std::vector<Plan> plans;  ///< By island.
+  std::vector<Island> islands;
+  std::vector<IslandRows<D>> groups;       ///< Island by island.
+  std::vector<IslandRow<D>> rows;          ///< Those of a group beside one another.
+  std::vector<IslandTension<D>> tensions;  ///< Island by island.
+  std::vector<Source> sources;             ///< By group.
+  std::vector<std::uint32_t> body_of;      ///< By node, the slot.
+  std::vector<std::uint32_t> tree;         ///< By slot: union-find of those that hold each other.
+  std::vector<int> node_of;                ///< By slot; -1: in no island that is solved.
+  std::vector<int> island_of;              ///< By slot, then by group while they are listed.
+  std::vector<Vector> change;              ///< By node: of the velocity, m/s and rad/s.
+  std::vector<Vector> correction;          ///< By node: speed for positions alone.
+  IslandWork work;
+
+  /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and
+  /// `correction`.
+  /// @param tolerance  m/s or rad/s that a row may miss before anything is done.
+  Solved solve(const Island& island, std::span<const BodyMass<D>> masses,
+               std::span<const Motion<D>> motions, Wide tolerance);
+
+ private:
+  bool rests(const Island& island, Wide tolerance) const;
+  Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);
+  void weaken_guess(const Island& island, Wide share);
+  void choose(const Island& island);
+  bool let_go(const Island& island);
+  void assemble(const Island& island, std::span<const BodyMass<D>> masses,
+                std::span<const Motion<D>> motions);
+  bool hold_to_bounds(const Island& island, std::span<const BodyMass<D>> masses);
+  Wide best_step(const Island& island) const;
+  Wide take(const Island& island, std::span<const BodyMass<D>> masses);
+  void correct_positions(const Island& island);
+  Wide most_missing(const Island& island) const;
+  void forget_conflict(const Island& island);
+  Wide along(const IslandRows<D>& group, const IslandRow<D>& row,
+             std::span<const Vector> velocity) const;
+  void push(const IslandRows<D>& group, const IslandRow<D>& row, Wide impulse,
+            std::span<Vector> momentum) const;
+
+  std::vector<Vector> solution_;  ///< By node.
+  std::vector<Vector> momentum_;
+};
+
+}  // namespace cycloid::solver

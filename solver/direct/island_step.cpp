@@ -1,0 +1,201 @@
+#include <algorithm>
+
+#include "solver/direct/island_parts.hpp"
+
+namespace cycloid::solver {
+
+template <int D>
+Wide IslandSolver<D>::along(const IslandRows<D>& group, const IslandRow<D>& row,
+                            std::span<const Vector> velocity) const {
+  Wide sum = 0.0;
+  if (group.node_a >= 0)
+    for (int i = 0; i < kFreedoms; ++i)
+      sum += static_cast<Wide>(row.a[i]) * velocity[static_cast<std::size_t>(group.node_a)][i];
+  if (group.node_b >= 0)
+    for (int i = 0; i < kFreedoms; ++i)
+      sum += static_cast<Wide>(row.b[i]) * velocity[static_cast<std::size_t>(group.node_b)][i];
+  return sum;
+}
+
+template <int D>
+void IslandSolver<D>::push(const IslandRows<D>& group, const IslandRow<D>& row, Wide impulse,
+                           std::span<Vector> momentum) const {
+  if (group.node_a >= 0)
+    for (int i = 0; i < kFreedoms; ++i)
+      momentum[static_cast<std::size_t>(group.node_a)][i] += impulse * static_cast<Wide>(row.a[i]);
+  if (group.node_b >= 0)
+    for (int i = 0; i < kFreedoms; ++i)
+      momentum[static_cast<std::size_t>(group.node_b)][i] += impulse * static_cast<Wide>(row.b[i]);
+}
+
+/// Mass of one freedom or pair of freedoms; where there is no inertia, 1 on the diagonal.
+template <int D>
+static void set_mass(const BodyMass<D>& mass, SquareBlock<Dim<D>::kFreedoms>& block) {
+  constexpr int kSpin = Dim<D>::kSpin;
+  for (int i = 0; i < D; ++i) block.m[i][i] = 1.0 / static_cast<Wide>(mass.inverse_mass);
+  const float* inverse = mass.inverse_inertia.m;
+  if constexpr (kSpin == 1) {
+    block.m[D][D] = inverse[0] > 0.0f ? 1.0 / static_cast<Wide>(inverse[0]) : 1.0;
+  } else {
+    Wide m[9];
+    for (int i = 0; i < 9; ++i) m[i] = static_cast<Wide>(inverse[i]);
+    Wide cofactor[3][3];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        cofactor[i][j] = m[3 * ((i + 1) % 3) + (j + 1) % 3] * m[3 * ((i + 2) % 3) + (j + 2) % 3] -
+                         m[3 * ((i + 1) % 3) + (j + 2) % 3] * m[3 * ((i + 2) % 3) + (j + 1) % 3];
+    const Wide determinant = m[0] * cofactor[0][0] + m[1] * cofactor[0][1] + m[2] * cofactor[0][2];
+    for (int i = 0; i < 3; ++i)
+      for (int j = 0; j < 3; ++j)
+        block.m[D + i][D + j] = determinant > 0.0
+                                    ? 0.5 * (cofactor[i][j] + cofactor[j][i]) / determinant
+                                : i == j ? 1.0
+                                         : 0.0;
+  }
+}
+
+/// block += scale p q^T.
+template <int N>
+static void add_outer(Wide scale, const float (&p)[N], const float (&q)[N], SquareBlock<N>& block) {
+  for (int i = 0; i < N; ++i) {
+    const Wide scaled = scale * static_cast<Wide>(p[i]);
+    for (int j = 0; j < N; ++j) block.m[i][j] += scaled * static_cast<Wide>(q[j]);
+  }
+}
+
+/// In the plane there is one axis, and it is across.
+static Wide across(const Vec<2>&, int, int) {
+  return 1.0;
+}
+static Wide across(const Vec<3>& along, int i, int j) {
+  return (i == j ? 1.0 : 0.0) - static_cast<Wide>(along[i]) * static_cast<Wide>(along[j]);
+}
+
+/// M + J^T W J and -J^T W missing of the rows that hold.
+template <int D>
+void IslandSolver<D>::assemble(const Island& island, std::span<const BodyMass<D>> masses,
+                               std::span<const Motion<D>> motions) {
+  matrix.clear(island.steps);
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    solution_[static_cast<std::size_t>(n)] = Vector::zero();
+    set_mass<D>(masses[body_of[static_cast<std::size_t>(n)]], matrix.diagonal(n));
+  }
+  for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
+    const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
+    const auto node = static_cast<std::size_t>(tension.node);
+    const Motion<D>& motion = motions[body_of[node]];
+    for (int i = 0; i < Dim<D>::kSpin; ++i)
+      for (int j = 0; j < Dim<D>::kSpin; ++j) {
+        const Wide stiffness = static_cast<Wide>(tension.stiffness) * across(tension.along, i, j);
+        matrix.diagonal(tension.node).m[D + i][D + j] += stiffness;
+        solution_[node][D + i] -=
+            stiffness * (static_cast<Wide>(motion.spin[j]) + change[node][D + j]);
+      }
+  }
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      if (!row.holds) continue;
+      const auto stiffness = static_cast<Wide>(row.stiffness);
+      push(group, row, -stiffness * row.missing, solution_);
+      if (group.node_a >= 0) add_outer(stiffness, row.a, row.a, matrix.diagonal(group.node_a));
+      if (group.node_b >= 0) add_outer(stiffness, row.b, row.b, matrix.diagonal(group.node_b));
+      if (group.pair < 0) continue;
+      if (group.node_a > group.node_b)
+        add_outer(stiffness, row.a, row.b, matrix.beside(group.pair));
+      else
+        add_outer(stiffness, row.b, row.a, matrix.beside(group.pair));
+    }
+  }
+}
+
+/// Holds the new impulses to their bounds. @returns whether any was outside; then the solution is
+/// that of the bounded ones.
+template <int D>
+bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyMass<D>> masses) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    momentum_[static_cast<std::size_t>(n)] = Vector::zero();
+  bool bounded = false;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    if (!group.is_contact) continue;
+    const Wide normal = std::max(row[0].impulse + row[0].change, 0.0);
+    const Wide bound = static_cast<Wide>(group.friction) * normal;
+    const Wide square = square_of_tangents(group, row);
+    Wide scale = 1.0;
+    if (square > bound * bound) {
+      const Wide length = root(square);  // 0 of what is too small for a float.
+      scale = length > 0.0 ? bound / length : 0.0;
+    }
+    for (int r = 0; r < group.count; ++r) {
+      const Wide wanted = row[r].impulse + row[r].change;
+      const Wide more = (r == 0 ? normal : scale * wanted) - wanted;
+      if (more == 0.0) continue;
+      bounded = true;
+      row[r].change += more;
+      push(group, row[r], more, momentum_);
+    }
+  }
+  for (int n = island.nodes.begin; bounded && n < island.nodes.end; ++n) {
+    const auto node = static_cast<std::size_t>(n);
+    const Vector more = answer_to<D>(momentum_[node], masses[body_of[node]]);
+    for (int i = 0; i < kFreedoms; ++i) solution_[node][i] += more[i];
+  }
+  return bounded;
+}
+
+/// How far along the changes the work that is left is least: from 0 to 1.
+template <int D>
+Wide IslandSolver<D>::best_step(const Island& island) const {
+  Wide slope = 0.0;
+  Wide curve = 0.0;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      if (row.change == 0.0) continue;
+      slope += row.change * row.missing;
+      curve += row.change * along(group, row, solution_);
+    }
+  }
+  if (!(slope < 0.0)) return 0.0;
+  return curve > -slope ? -slope / curve : 1.0;
+}
+
+/// Bounds the changes and goes as far with them as helps. @returns how far.
+template <int D>
+Wide IslandSolver<D>::take(const Island& island, std::span<const BodyMass<D>> masses) {
+  const Wide step = hold_to_bounds(island, masses) ? best_step(island) : 1.0;
+  if (step == 0.0) return step;
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    for (int i = 0; i < kFreedoms; ++i)
+      change[static_cast<std::size_t>(n)][i] += step * solution_[static_cast<std::size_t>(n)][i];
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      row.impulse += step * row.change;
+      row.missing += step * along(group, row, solution_);
+    }
+  }
+  return step;
+}
+
+template Wide IslandSolver<2>::along(const IslandRows<2>&, const IslandRow<2>&,
+                                     std::span<const Vector>) const;
+template void IslandSolver<2>::push(const IslandRows<2>&, const IslandRow<2>&, Wide,
+                                    std::span<Vector>) const;
+template void IslandSolver<2>::assemble(const Island&, std::span<const BodyMass<2>>,
+                                        std::span<const Motion<2>>);
+template Wide IslandSolver<2>::take(const Island&, std::span<const BodyMass<2>>);
+template Wide IslandSolver<3>::along(const IslandRows<3>&, const IslandRow<3>&,
+                                     std::span<const Vector>) const;
+template void IslandSolver<3>::push(const IslandRows<3>&, const IslandRow<3>&, Wide,
+                                    std::span<Vector>) const;
+template void IslandSolver<3>::assemble(const Island&, std::span<const BodyMass<3>>,
+                                        std::span<const Motion<3>>);
+template Wide IslandSolver<3>::take(const Island&, std::span<const BodyMass<3>>);
+
+}  // namespace cycloid::solver

@@ -1,0 +1,41 @@
+#pragma once
+
+#include <memory>
+#include <utility>
+
+#include "solver/step_scratch.hpp"
+
+namespace cycloid::solver {
+
+/// Where steps find their memory: a piece for each thread that steps at the same time.
+template <int D>
+struct StepMemory : Depot<StepScratch<D>> {};
+
+/// The memory of one step, and in it what its world keeps, as long as this lives.
+template <int D>
+class StepLoan {
+ public:
+  StepLoan(StepMemory<D>& memory, KeptByWorld<D>& kept)
+      : memory_(memory), kept_(kept), scratch_(memory.borrow()) {
+    exchange();
+  }
+  StepLoan(const StepLoan&) = delete;
+  StepLoan& operator=(const StepLoan&) = delete;
+  ~StepLoan() {
+    exchange();
+    // Or the next edit of the world would have to make a copy.
+    scratch_->before.shapes = {};
+    scratch_->before.links = {};
+    memory_.give_back(std::move(scratch_));
+  }
+  StepScratch<D>& scratch() { return *scratch_; }
+
+ private:
+  void exchange() { std::swap(kept_, static_cast<KeptByWorld<D>&>(*scratch_)); }
+
+  StepMemory<D>& memory_;
+  KeptByWorld<D>& kept_;
+  std::unique_ptr<StepScratch<D>> scratch_;
+};
+
+}  // namespace cycloid::solver

@@ -1,0 +1,153 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <cmath>
+#include <stdexcept>
+#include <string>
+#include <vector>
+
+#include "bench/trials/judges.hpp"
+#include "bench/trials/methods.hpp"
+#include "scenes/build.hpp"
+#include "scenes/simulation.hpp"
+#include "solver/validate.hpp"
+
+namespace cycloid::trials {
+
+static solver::Tuning islands_at_once() {
+  solver::Tuning tuning = solver::Tuning::soft_step();
+  tuning.contact_block = solver::ContactBlockRows::kIsland;
+  return tuning;
+}
+
+static const scenes::Trial& trial_named(const std::string& name) {
+  for (const scenes::Trial& trial : scenes::trials())
+    if (trial.name == name) return trial;
+  throw std::logic_error("no trial " + name);
+}
+
+static scenes::Simulation begin_trial(const std::string& name) {
+  scenes::Scene scene = trial_named(name).make();
+  scene.tuning = with_method(scene.tuning, islands_at_once());
+  solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
+  EXPECT_TRUE(simulation.ok()) << simulation.error().field;
+  return std::move(simulation.value());
+}
+
+/// Blows on pyramids, joints with contacts in loops, motors against limits, and four points of a
+/// box in space.
+static constexpr const char* kMixed[] = {"trial-heavy-apexes", "trial-bridge",
+                                         "trial-ragdoll-stress", "trial-arch",
+                                         "trial-duplicate-points"};
+
+TEST(IslandsAtOnce, WorkersAndLanesAreInvisible) {
+  struct Setting {
+    int workers;
+    int lanes;
+  };
+  for (const char* name : kMixed)
+    for (const Setting setting : {Setting{2, 4}, Setting{3, 1}, Setting{1, 8}, Setting{8, 16}}) {
+      scenes::Simulation one = begin_trial(name);
+      scenes::Simulation other = begin_trial(name);
+      ASSERT_TRUE(one.set_lanes(4).ok());
+      ASSERT_TRUE(other.set_lanes(setting.lanes).ok());
+      ASSERT_TRUE(other.set_workers(setting.workers).ok());
+      for (int tick = 1; tick <= 90; ++tick) {
+        ASSERT_TRUE(one.step({}).ok());
+        ASSERT_TRUE(other.step({}).ok());
+        ASSERT_EQ(one.digest(), other.digest()) << name << ", tick " << tick << ", workers "
+                                                << setting.workers << ", lanes " << setting.lanes;
+      }
+    }
+}
+
+TEST(IslandsAtOnce, RestoredFromMemoryAndFromBytesTheyGoOnAsTheyWere) {
+  for (const char* name : kMixed) {
+    scenes::Simulation simulation = begin_trial(name);
+    for (int tick = 0; tick < 45; ++tick) ASSERT_TRUE(simulation.step({}).ok());
+    scenes::Simulation::Saved saved;
+    simulation.save(saved);
+    std::vector<std::byte> bytes;
+    simulation.encode(bytes);
+    std::vector<std::uint64_t> digests;
+    for (int tick = 0; tick < 45; ++tick) {
+      ASSERT_TRUE(simulation.step({}).ok());
+      digests.push_back(simulation.digest());
+    }
+    simulation.restore(saved);
+    scenes::Simulation fresh = begin_trial(name);
+    ASSERT_TRUE(fresh.decode(bytes).ok());
+    for (const std::uint64_t digest : digests) {
+      ASSERT_TRUE(simulation.step({}).ok());
+      ASSERT_TRUE(fresh.step({}).ok());
+      ASSERT_EQ(simulation.digest(), digest) << name;
+      ASSERT_EQ(fresh.digest(), digest) << name;
+    }
+  }
+}
+
+TEST(IslandsAtOnce, HoldWhatSoftSweepsLetFall) {
+  struct Claim {
+    const char* trial;
+    double most;
+  };
+  constexpr Claim kClaims[] = {{"trial-heavy-on-light-1000", 0.001}, {"trial-stack-30", 0.01},
+                               {"trial-400-on-thin-ground", 0.001},  {"trial-arch", 0.05},
+                               {"trial-ball-and-chain", 0.005},      {"trial-chain-50000", 0.005}};
+  for (const Claim& claim : kClaims) {
+    const scenes::Trial& trial = trial_named(claim.trial);
+    const Outcome held = judge(trial, islands_at_once());
+    EXPECT_TRUE(held.ended) << claim.trial;
+    EXPECT_LT(held.value, claim.most) << claim.trial;
+    const Outcome swept = judge(trial, solver::Tuning::soft_step());
+    EXPECT_TRUE(!swept.ended || swept.value > claim.most) << claim.trial;
+  }
+}
+
+/// Kinetic energy and that of height, J.
+static double energy_of(const solver::WorldState<2>& state) {
+  double energy = 0.0;
+  for (const solver::Body<2>& body : state.bodies) {
+    if (body.kind != solver::BodyKind::kDynamic) continue;
+    const double mass = static_cast<double>(body.mass);
+    const double spin = static_cast<double>(body.spin[0]);
+    energy += 0.5 * mass * static_cast<double>(dot(body.velocity, body.velocity)) +
+              0.5 * static_cast<double>(body.inertia.m[0]) * spin * spin -
+              mass * static_cast<double>(dot(state.header.gravity, body.position)) *
+                  static_cast<double>(body.gravity_scale);
+  }
+  return energy;
+}
+
+TEST(IslandsAtOnce, GainNoEnergy) {
+  // Blows, falls and swings; overlap that positions are moved out of lifts what lies on it.
+  for (const char* name : {"trial-stack-30", "trial-heavy-apexes", "trial-card-house", "trial-arch",
+                           "trial-ball-and-chain", "trial-chain-1000", "trial-joint-grid-30"}) {
+    scenes::Scene scene = trial_named(name).make();
+    scene.tuning = with_method(scene.tuning, islands_at_once());
+    std::vector<scenes::Mistake> mistakes;
+    const auto built = scenes::build<2>(scene, mistakes);
+    ASSERT_TRUE(built != nullptr) << name;
+    const auto energy = [&] { return energy_of(built->world.state()); };
+    const double start = energy();
+    double least = start;
+    double most = start;
+    for (int tick = 0; tick < 240; ++tick) {
+      ASSERT_TRUE(built->world.step().ok()) << name;
+      most = std::max(most, energy());
+      least = std::min(least, energy());
+    }
+    EXPECT_LE(most - start, 0.01 * (start - least) + 1.0e-3 * std::abs(start)) << name;
+  }
+}
+
+TEST(IslandsAtOnce, AreRefusedUnderMethodsWithoutSoftness) {
+  solver::Tuning tuning = solver::Tuning::pgs();
+  tuning.contact_block = solver::ContactBlockRows::kIsland;
+  const solver::Error error = solver::validate(tuning);
+  EXPECT_EQ(error.code, solver::Code::kInvalid);
+  EXPECT_STREQ(error.field, "contact_block");
+  EXPECT_TRUE(solver::validate(islands_at_once()).ok());
+}
+
+}  // namespace cycloid::trials

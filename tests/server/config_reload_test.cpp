@@ -1,0 +1,135 @@
+#include <gtest/gtest.h>
+
+#include <csignal>
+
+#include "tests/server/config_fixture.hpp"
+#include "tests/server/http_fixture.hpp"
+
+namespace cycloid::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+const std::string kPorts = "[server]\nport = 0\n[operation]\nport = 0\n";
+
+/// With an admin, who reloads and is answered when it is done.
+class ConfigReloadTest : public testing::Test {
+ protected:
+  ConfigReloadTest() { token_.write(std::string(kAdminToken) + "\n"); }
+
+  std::string admin() const { return "[admin]\ntoken_file = \"" + token_.path() + "\"\n"; }
+  void serve(const std::string& head = "") {
+    file_.write(kPorts + head + admin() + kConfigRooms);
+    server_.emplace(file_);
+  }
+  Answer reload(const std::string& text) {
+    file_.write(text);
+    return reload();
+  }
+  Answer reload() { return post("/admin/reload"); }
+  Answer post(const std::string& path) { return http(server_->at().operation_port, "POST", path); }
+  std::unique_ptr<HostPeer> greeted(const std::string& room) {
+    auto peer = std::make_unique<HostPeer>(server_->at().port);
+    peer->greet(room);
+    return peer;
+  }
+  /// How its greeting was refused, or nothing.
+  std::optional<protocol::Refusal> refused(const std::string& room) {
+    const auto peer = greeted(room);
+    const auto refused = peer->wait_for<protocol::Refused>();
+    return refused ? std::optional(refused->code) : std::nullopt;
+  }
+  std::string lines() {
+    EXPECT_TRUE(server_->stop().good);
+    return server_->lines();
+  }
+
+  ConfigFile file_{"reload"};
+  ConfigFile token_{"reload-token"};
+  std::optional<Configured> server_;
+};
+
+TEST_F(ConfigReloadTest, TakesLimitsAndRefusesAPortByName) {
+  serve();
+  const auto first = greeted("duel:1");
+  ASSERT_TRUE(first->wait_for<protocol::Welcome>());
+  EXPECT_EQ(reload("[server]\nport = 4711\n[operation]\nport = 0\n[limits]\nrooms = 1\n" + admin() +
+                   kConfigRooms)
+                .status,
+            409);
+  const auto second = greeted("duel:2");  // The old limit still holds: nothing was taken.
+  ASSERT_TRUE(second->wait_for<protocol::Welcome>());
+  EXPECT_EQ(reload("[server\n").status, 422);
+  EXPECT_EQ(reload(kPorts + "[limits]\nrooms = 1\n" + admin() + kConfigRooms).status, 200);
+  EXPECT_EQ(refused("duel:3"), protocol::Refusal::kRoomFull);
+  first->hang_up();
+  second->hang_up();
+  const std::string said = lines();
+  EXPECT_NE(said.find("cannot change while the server runs: server.port"), std::string::npos)
+      << said;
+  EXPECT_NE(said.find("not TOML"), std::string::npos) << said;
+  EXPECT_NE(said.find("reloaded " + file_.path()), std::string::npos) << said;
+}
+
+TEST_F(ConfigReloadTest, ComesWithSighupToo) {
+  serve();
+  const auto peer = greeted("arena");
+  ASSERT_TRUE(peer->wait_for<protocol::Welcome>());  // From then on signals are caught.
+  file_.write(kPorts + "[limits]\nrooms = 1\n" + admin() + kConfigRooms);
+  ASSERT_EQ(::kill(::getpid(), SIGHUP), 0);
+  int tries = 0;
+  EXPECT_TRUE(eventually([&] {  // Until then each makes a room.
+    return !greeted("duel:" + std::to_string(++tries))->wait_for<protocol::Welcome>();
+  }));
+  peer->hang_up();
+  EXPECT_NE(lines().find("reloaded " + file_.path()), std::string::npos);
+}
+
+/// What is at the path when the signal comes may be anything; the matches go on.
+TEST_F(ConfigReloadTest, AFolderInThePlaceOfTheFileEndsNoMatch) {
+  serve();
+  const auto peer = greeted("arena");
+  ASSERT_TRUE(peer->wait_for<protocol::Welcome>());
+  std::filesystem::remove(file_.path());
+  std::filesystem::create_directory(file_.path());
+  ASSERT_EQ(::kill(::getpid(), SIGHUP), 0);
+  const Answer answer = reload();
+  EXPECT_EQ(answer.status, 422);
+  EXPECT_NE(answer.body.find("cannot be read"), std::string::npos) << answer.body;
+  for (int i = 0; i < 30; ++i) ASSERT_TRUE(peer->wait_for<protocol::InputFrame>());
+  peer->hang_up();
+  const std::string said = lines();
+  const std::string refusal = "not reloaded, nothing is changed";
+  const std::size_t first = said.find(refusal);
+  ASSERT_NE(first, std::string::npos) << said;
+  EXPECT_NE(said.find(refusal, first + 1), std::string::npos)
+      << "the signal and the admin: " << said;
+}
+
+TEST_F(ConfigReloadTest, TakesTheBoundsOfTheGate) {
+  serve();
+  const auto first = greeted("arena");
+  ASSERT_TRUE(first->wait_for<protocol::Welcome>());
+  const std::string bounds = "[limits]\nconnections = 1\n";
+  ASSERT_EQ(reload(kPorts + bounds + admin() + kConfigRooms).status, 200);
+  EXPECT_EQ(refused("arena"), protocol::Refusal::kRateLimited);
+  ASSERT_TRUE(first->wait_for<protocol::InputFrame>());  // Who is in stays.
+  ASSERT_EQ(reload(kPorts + admin() + kConfigRooms).status, 200);
+  const auto second = greeted("arena");
+  EXPECT_TRUE(second->wait_for<protocol::Welcome>());
+}
+
+TEST_F(ConfigReloadTest, ADrainLastsAsLongAsTheFileSaysNow) {
+  serve();
+  const auto peer = greeted("arena");
+  ASSERT_TRUE(peer->wait_for<protocol::Welcome>());
+  const std::string longer = "[server]\nport = 0\ndrain_s = 70\n[operation]\nport = 0\n";
+  ASSERT_EQ(reload(longer + admin() + kConfigRooms).status, 200);
+  EXPECT_EQ(post("/admin/rooms/arena/drain").status, 200);
+  const auto notice = peer->wait_for<protocol::RoomNotice>();
+  ASSERT_TRUE(notice);
+  EXPECT_EQ(notice->value, 70'000u);
+}
+
+}  // namespace
+}  // namespace cycloid::server

@@ -1,0 +1,62 @@
+#include "solver/direct/island_solver.hpp"
+
+#include <gtest/gtest.h>
+
+#include <vector>
+
+namespace cycloid::solver {
+
+/// A body of 1 kg that two points of contact with the ground push up and rub to the right.
+struct BodyOnGround {
+  IslandSolver<2> solver;
+  IslandSolver<2>::Island island{};
+  std::vector<BodyMass<2>> masses = {{1.0f, {{1.0f}}}};
+  std::vector<Motion<2>> motions = std::vector<Motion<2>>(1);
+
+  BodyOnGround() {
+    solver.matrix.begin(1);
+    EXPECT_TRUE(solver.matrix.analyse({0, 1}, 100, island.steps));
+    island.nodes = {0, 1};
+    solver.body_of = {0};
+    solver.change.resize(1);
+    solver.correction.resize(1);
+    for (int point = 0; point < 2; ++point) {
+      solver.groups.push_back({-1, 0, -1, 2 * point, 2, true, 0.5f});
+      add_row(0.0f, 1.0f);
+      add_row(1.0f, 0.0f);
+    }
+    island.groups = {0, 2};
+  }
+  void add_row(float x, float y) {
+    IslandRow<2> row{};
+    row.b[0] = x;
+    row.b[1] = y;
+    row.mass = 1.0f;
+    row.stiffness = 1000.0f;
+    solver.rows.push_back(row);
+  }
+  Solved solve() { return solver.solve(island, masses, motions, 1.0e-3); }
+};
+
+TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
+  BodyOnGround body;
+  for (const std::size_t normal : {0, 2}) body.solver.rows[normal].missing = -1.0;
+  EXPECT_EQ(body.solve(), Solved::kWhole);
+  EXPECT_NEAR(body.solver.change[0][1], 1.0, 1.0e-3);
+  EXPECT_NEAR(body.solver.rows[0].impulse + body.solver.rows[2].impulse, 1.0, 1.0e-3);
+}
+
+// What is left of an impulse can be so small that its square is no float: 0 over 0 is no direction.
+TEST(IslandSolver, LetsGoOfFrictionTooSmallToHaveADirection) {
+  for (const double rest : {1.0e-20, 1.0e-25, 1.0e-40}) {
+    BodyOnGround body;
+    body.solver.rows[0].missing = -1.0;
+    body.solver.rows[2].missing = 1.0;
+    body.solver.rows[3].impulse = rest;
+    EXPECT_EQ(body.solve(), Solved::kWhole) << rest;
+    EXPECT_EQ(body.solver.rows[3].impulse, 0.0) << rest;
+    EXPECT_NEAR(body.solver.change[0][1], 1.0, 2.0e-3) << rest;
+  }
+}
+
+}  // namespace cycloid::solver

@@ -1,0 +1,91 @@
+#include "solver/record_bytes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <limits>
+#include <random>
+#include <vector>
+
+#include "solver/tracing/digest_writer.hpp"
+
+namespace cycloid::solver {
+
+/// Any bits, but mostly those that are special: zeros of both signs, NaN of both signs and of
+/// several kinds, infinities, subnormals.
+class AnyNumbers {
+ public:
+  template <class T>
+  void operator()(T& value) {
+    static constexpr std::uint32_t kSpecial[] = {0u,          0x80000000u, 0x7fc00000u, 0xffc00000u,
+                                                 0x7f800001u, 0xffffffffu, 0x7f800000u, 0xff800000u,
+                                                 1u,          0x80000001u, 0x3f800000u};
+    const std::uint32_t pick = draw() % 16;
+    const std::uint32_t bits = pick < std::size(kSpecial) ? kSpecial[pick] : draw();
+    value = std::bit_cast<T>(bits);
+  }
+
+ private:
+  std::uint32_t draw() { return static_cast<std::uint32_t>(random_()); }
+
+  std::mt19937 random_{7};
+};
+
+template <class R>
+std::vector<R> any_records(std::size_t count) {
+  std::vector<R> records(count);
+  AnyNumbers any;
+  for (R& record : records) visit_words(record, any);
+  return records;
+}
+
+template <class R>
+class Records : public testing::Test {};
+using EveryRecord =
+    testing::Types<Material, Body<2>, Body<3>, Shape<2>, Shape<3>, Contact<2>, Contact<3>, Joint<2>,
+                   Joint<3>, Particle<2>, Particle<3>, Link, Pin<2>, Pin<3>, Polyhedron,
+                   PolyhedronVertex, PolyhedronFace, PolyhedronEdge, std::uint32_t>;
+TYPED_TEST_SUITE(Records, EveryRecord);
+
+TYPED_TEST(Records, AreTheSameBytesByCopyAndByNumber) {
+  for (std::size_t count : {0u, 1u, 3u, 4u, 5u, 33u}) {
+    const std::vector<TypeParam> records = any_records<TypeParam>(count);
+    const std::size_t size = count * visited_bytes<TypeParam>();
+    // One byte more, which nobody may write.
+    std::vector<std::byte> by_number(size + 1, std::byte{0x5a});
+    std::vector<std::byte> written(size + 1, std::byte{0x5a});
+    EXPECT_EQ(write_by_number(std::span(records), by_number.data()), by_number.data() + size);
+    EXPECT_EQ(write_records(std::span(records), written.data()), written.data() + size);
+    EXPECT_EQ(written, by_number);
+
+    std::vector<TypeParam> read(count);
+    ByteReader reader{std::span(written).first(size)};
+    read_records(reader, std::span(read));
+    EXPECT_FALSE(reader.failed);
+    EXPECT_TRUE(reader.bytes.empty());
+    std::vector<std::byte> again(size + 1, std::byte{0x5a});
+    write_by_number(std::span<const TypeParam>(read), again.data());
+    EXPECT_EQ(again, by_number);
+  }
+}
+
+TYPED_TEST(Records, AreDigestedAsTheirNumbers) {
+  for (std::size_t count : {0u, 1u, 3u, 4u, 5u, 33u, 400u}) {
+    const std::vector<TypeParam> records = any_records<TypeParam>(count);
+    // Begun with some numbers, so that records start at every place of the buffer.
+    for (std::uint32_t before : {0u, 1u, 5u, 1021u}) {
+      DigestWriter by_number;
+      DigestWriter by_record;
+      for (std::uint32_t i = 0; i < before; ++i) {
+        by_number(i);
+        by_record(i);
+      }
+      for (const TypeParam& record : records) visit_words(record, by_number);
+      by_record.records(std::span(records));
+      by_number(7u);
+      by_record(7u);
+      EXPECT_EQ(by_record.digest(), by_number.digest()) << count << " after " << before;
+    }
+  }
+}
+
+}  // namespace cycloid::solver
