@@ -82,9 +82,8 @@ def configure_command(row: Row, place: Place) -> list[str]:
                "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None",
                f"-DCMAKE_CXX_COMPILER={row.compiler}",
                "-DCYCLOID_NETWORK=OFF", "-DCYCLOID_TESTS=OFF", "-DCYCLOID_EXPERIMENTS=OFF",
-               "-DCYCLOID_PROGRAM_OPTIONS=-O0"]
-    if shutil.which("ccache"):
-        command.append("-DCMAKE_CXX_COMPILER_LAUNCHER=ccache")
+               "-DCYCLOID_PROGRAM_OPTIONS=-O0",
+               f"-DCMAKE_PROJECT_INCLUDE={pathlib.Path(__file__).with_name('precompile.cmake')}"]
     if row.toolchain:
         command.append(f"-DCMAKE_TOOLCHAIN_FILE={place.root / 'cmake/toolchains' / row.toolchain}")
     return command + [place.text(row, argument) for argument in row.cmake]
@@ -105,8 +104,7 @@ def build(row: Row, place: Place) -> None:
     build_command = ["cmake", "--build", str(folder), "--parallel", str(place.jobs),
                      "--target", "cycloid_cli"]
     # By the environment, because a toolchain file's own flags are then kept beside these.
-    environment = {"CCACHE_BASEDIR": str(place.root),
-                   "CXXFLAGS": place.text(row, row.flags),
+    environment = {"CXXFLAGS": place.text(row, row.flags),
                    "LDFLAGS": place.text(row, row.link_flags)}
     for command in (configure_command(row, place), build_command):
         if not _logged(command, log, place.root, environment):

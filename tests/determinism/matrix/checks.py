@@ -114,9 +114,13 @@ def read_objects(row: Row, place: Place) -> None:
         raise RowFailed(f"its objects: {(done.stdout + done.stderr).strip()}")
 
 
+def log_folder(row: Row, place: Place) -> pathlib.Path:
+    return place.builds / "logs" / row.name
+
+
 def write_logs(row: Row, matrix: Matrix, place: Place) -> pathlib.Path:
     """Writes a log of every scene of the exchange; the folder they lie in."""
-    folder = place.builds / "logs" / row.name
+    folder = log_folder(row, place)
     shutil.rmtree(folder, ignore_errors=True)
     folder.mkdir(parents=True)
     for scene in matrix.log_scenes:

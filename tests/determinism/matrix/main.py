@@ -9,6 +9,7 @@ import time
 import build
 import checks
 import report
+import resume
 import rows
 
 HERE = pathlib.Path(__file__).resolve().parent
@@ -24,6 +25,8 @@ def _parser() -> argparse.ArgumentParser:
     parser.add_argument("--group", action="append", default=[], metavar="NAME",
                         help="the rows of this group only; may be repeated")
     parser.add_argument("--quick", action="store_true", help="the rows that CI runs")
+    parser.add_argument("--resume", action="store_true",
+                        help="keep the rows that were equal in an earlier run at this commit")
     parser.add_argument("--jobs", type=int, default=1, help="compilers and programs at a time")
     parser.add_argument("--packages", action="store_true",
                         help="print what must be installed, a line per row, and stop")
@@ -102,16 +105,22 @@ def _exchange(results: list[report.Result], folders: dict[str, pathlib.Path],
         result.run_s += time.monotonic() - started
 
 
-def run_matrix(chosen: list[rows.Row], matrix: rows.Matrix, place: build.Place) -> int:
-    """Runs the rows and prints the table; 1 if one failed."""
+def run_matrix(chosen: list[rows.Row], matrix: rows.Matrix, place: build.Place,
+               is_resumed: bool) -> int:
+    """Runs the rows, but those kept of an earlier run, and prints the table; 1 if one failed."""
     place.builds.mkdir(parents=True, exist_ok=True)
-    results = [report.Result(row) for row in chosen]
+    state = resume.state_of(place.root)
+    results: list[report.Result] = []
     folders: dict[str, pathlib.Path] = {}
-    for number, result in enumerate(results, 1):
-        _say(f"{number} of {len(results)}: {result.row.name}")
-        folder = _make(result, matrix, place)
+    for number, row in enumerate(chosen, 1):
+        _say(f"{number} of {len(chosen)}: {row.name}")
+        kept = resume.kept(row, state, place, checks.log_folder(row, place)) if is_resumed else None
+        result = kept or report.Result(row)
+        results.append(result)
+        folder = checks.log_folder(row, place) if kept else _make(result, matrix, place)
+        resume.keep(result, state, place)
         if folder is not None:
-            folders[result.row.name] = folder
+            folders[row.name] = folder
         _say(f"{result.row.name}: {result.verdict}, built in {result.build_s:.0f} s, "
              f"run in {result.run_s:.0f} s")
         for reason in result.reasons:
@@ -139,7 +148,7 @@ def main(words: list[str]) -> int:
         return 0
     root = arguments.root.resolve()
     return run_matrix(chosen, matrix, build.Place(root, root / "build/matrix",
-                                                  max(1, arguments.jobs)))
+                                                  max(1, arguments.jobs)), arguments.resume)
 
 
 if __name__ == "__main__":

@@ -7,6 +7,7 @@ import json
 import os
 import pathlib
 import stat
+import subprocess
 import sys
 import tempfile
 import tomllib
@@ -105,8 +106,10 @@ class MatrixTest(unittest.TestCase):
         (self.root / "goldens.txt").write_text(
             "cycloid-golden 1\nscene hill 100 0 0\nscene valley 100 0 0\n", encoding="utf-8")
 
-    def matrix(self, *words: str, fake: str = "good", breaks: bool = False) -> tuple[int, str]:
-        """Runs the script with a build that lays the fake program down; exit and output."""
+    def matrix(self, *words: str, fake: str = "good", breaks: bool = False,
+               built: list[str] | None = None) -> tuple[int, str]:
+        """Runs the script with a build that lays the fake program down; exit and output. Appends
+        the rows that were built to `built`."""
         rows_file = self.root / "rows.toml"
         rows_file.write_text(ROWS.replace("OTHER", fake), encoding="utf-8")
 
@@ -116,6 +119,7 @@ class MatrixTest(unittest.TestCase):
                 program.write_text(PROGRAM.replace("@python@", sys.executable), encoding="utf-8")
                 program.chmod(program.stat().st_mode | stat.S_IXUSR)
                 log.write_text("x.cpp:1: error: no such thing\n", encoding="utf-8")
+                (built if built is not None else []).append(log.parent.name)
             return not (breaks and "--build" in command)
 
         said = io.StringIO()
@@ -191,6 +195,40 @@ class MatrixTest(unittest.TestCase):
                 found, said = self.matrix("--row", "other")
             self.assertEqual(found, code, said)
             self.assertEqual("its objects: x.o: turn: vfmadd213ss" in said, code == 1, said)
+
+    def git(self, *words: str) -> None:
+        who = ["-c", "user.name=t", "-c", "user.email=t@t.example"]
+        subprocess.run(["git", *who, *words], cwd=self.root, check=True, capture_output=True)
+
+    def test_a_resumed_run_keeps_rows_that_were_equal_at_the_same_commit(self) -> None:
+        (self.root / ".gitignore").write_text("/build/\n/rows.toml\n", encoding="utf-8")
+        self.git("init")
+        self.git("add", "-A")
+        self.git("commit", "-m", "first")
+        rows = ["--row", "good", "--row", "other"]
+        self.matrix(*rows, fake="lanes")
+        built: list[str] = []
+        code, said = self.matrix(*rows, "--resume", built=built)
+        self.assertEqual((code, built), (0, ["other"]), said)  # It failed, so it is run again.
+        self.assertIn("2 of 2 rows equal, 0 failed, 440 digests", said)
+        code, said = self.matrix(*rows, "--resume", built=built)
+        self.assertEqual((code, built), (0, ["other"]), said)
+        self.assertEqual(self.record("good")["logs"], 2)  # Logs are exchanged all the same.
+        self.matrix(*rows, built=built)
+        self.assertEqual(built, ["other", "good", "other"])
+        del built[:]
+        (self.root / "build/matrix/good/cycloid").unlink()
+        self.matrix(*rows, "--resume", built=built)
+        self.assertEqual(built, ["good"])
+        (self.root / "goldens.txt").write_text("cycloid-golden 1\nscene valley 100 0 0\n"
+                                               "scene hill 100 0 0\n", encoding="utf-8")
+        del built[:]
+        self.matrix(*rows, "--resume", built=built)
+        self.assertEqual(built, ["good", "other"])  # A file differs from the commit.
+        self.git("commit", "-a", "-m", "second")
+        del built[:]
+        self.matrix(*rows, "--resume", built=built)
+        self.assertEqual(built, ["good", "other"])  # The commit is another one.
 
     def test_a_build_that_breaks_fails_with_the_end_of_its_log(self) -> None:
         self.matrix("--row", "good")
