@@ -49,7 +49,10 @@ class InputWindow {
   /// steers by what was said before.
   protocol::SeatFrame close_lost(std::uint64_t tick) {
     const Said& said = said_[slot(tick)];
-    if (said.tick == tick) return {protocol::Origin::kGiven, said.input};
+    if (said.tick == tick) {
+      last_ = said.input;  // Its holder may come back before the next tick, and be repeated.
+      return {protocol::Origin::kGiven, said.input};
+    }
     last_.reset();
     late_ = false;
     return {protocol::Origin::kNeutral, {}};

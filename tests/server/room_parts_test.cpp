@@ -143,6 +143,26 @@ TEST(ResumeTokens, AreGoodForOneSeatOnce) {
   EXPECT_FALSE(tokens.find(second));
 }
 
+TEST(InputWindow, RepeatsTheLastInputThatCountedWhoeverWasConnectedThen) {
+  const InputPolicy policy;
+  scenes::SeatInput first;
+  first.axes[0] = 100;
+  scenes::SeatInput second;
+  second.axes[0] = 200;
+  InputWindow window;
+  window.say(0, 1, first);
+  window.say(0, 2, second);
+  EXPECT_EQ(window.close(1, policy).input, first);
+  // The connection is lost, and its holder is back before another tick is missed.
+  EXPECT_EQ(window.close_lost(2).origin, protocol::Origin::kGiven);
+  const protocol::SeatFrame repeated = window.close(3, policy);
+  EXPECT_EQ(repeated.origin, protocol::Origin::kRepeated);
+  EXPECT_EQ(repeated.input, second);
+  // Nobody steers by what was said before a tick that was missed.
+  EXPECT_EQ(window.close_lost(4).origin, protocol::Origin::kNeutral);
+  EXPECT_EQ(window.close(5, policy).origin, protocol::Origin::kAbsent);
+}
+
 class RoomSnapshots : public RoomTest {};
 
 TEST_F(RoomSnapshots, DifferFromWhatTheClientHasAcknowledged) {
