@@ -168,11 +168,14 @@ solver::Statistics Simulation::statistics() const {
   return running_->visit([](const auto& built) { return built.world.statistics(); });
 }
 
-/// The quaternion about z of a planar rotation: half of its angle.
+/// The quaternion about z of a planar rotation: half of its angle, with w not negative. The larger
+/// part comes from the cosine, because 1 + c loses all digits near half a turn.
 static std::array<float, 4> quaternion_of(const solver::Rotation<2>& q) {
-  const float w = solver::sqrt(solver::max(0.0f, 0.5f * (1.0f + q[0])));
-  const float z = w > 1.0e-6f ? 0.5f * q[1] / w : 1.0f;
-  return {0.0f, 0.0f, z, w};
+  const float larger = solver::sqrt(0.5f * (1.0f + solver::abs(q[0])));
+  const float smaller = 0.5f * solver::abs(q[1]) / larger;
+  const float z = q[0] < 0.0f ? larger : smaller;
+  const float w = q[0] < 0.0f ? smaller : larger;
+  return {0.0f, 0.0f, q[1] < 0.0f ? -z : z, w};
 }
 static std::array<float, 4> quaternion_of(const solver::Rotation<3>& q) {
   return {q[0], q[1], q[2], q[3]};

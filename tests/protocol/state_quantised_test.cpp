@@ -107,20 +107,6 @@ TEST(Quantised, ARotationIsGuessedAcrossItsLargestComponent) {
   }
 }
 
-/// Not by Simulation::poses, whose half angle of a planar body loses digits near half a turn.
-std::vector<scenes::Pose> exact_poses(const scenes::Simulation& simulation) {
-  std::vector<scenes::Pose> poses = simulation.poses();
-  if (simulation.planar() == nullptr) return poses;
-  const auto bodies = simulation.planar()->bodies();
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    const double half =
-        0.5 * std::atan2(double{bodies[i].rotation[1]}, double{bodies[i].rotation[0]});
-    poses[i].rotation = {0.0f, 0.0f, static_cast<float>(std::sin(half)),
-                         static_cast<float>(std::cos(half))};
-  }
-  return poses;
-}
-
 TEST(Quantised, PositionsAreWithinHalfAStepAsFarAsTheLimit) {
   Played played("newtons-cradle");
   solver::World<2>* world = played.simulation().planar();
@@ -137,7 +123,7 @@ TEST(Quantised, PositionsAreWithinHalfAStepAsFarAsTheLimit) {
                                {{std::cos(angle), std::sin(angle)}})
                     .ok());
     const QuantisedState state = capture(played.simulation());
-    const auto poses = exact_poses(played.simulation());
+    const auto poses = played.simulation().poses();
     ASSERT_EQ(state.bodies.size(), poses.size());
     for (std::size_t k = 0; k < poses.size(); ++k) {
       const scenes::Pose shown = pose_of(state.bodies[k], state.dimension);
@@ -161,7 +147,7 @@ TEST(Quantised, PositionsAreWithinHalfAStepAsFarAsTheLimit) {
 }
 
 void expect_within(const scenes::Simulation& simulation, const QuantisedState& state) {
-  const auto poses = exact_poses(simulation);
+  const auto poses = simulation.poses();
   const double turn_max = state.dimension == 2 ? kAngleErrorMax_rad : kRotationErrorMax_rad;
   ASSERT_EQ(state.bodies.size(), poses.size());
   for (std::size_t k = 0; k < poses.size(); ++k) {

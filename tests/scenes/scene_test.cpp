@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <fstream>
 #include <functional>
 #include <limits>
@@ -347,6 +348,25 @@ TEST(HalfPipe, BothRidersStayOnTheirRampsForTenSeconds) {
     }
   }
   EXPECT_TRUE(crossed[0] && crossed[1]);
+}
+
+TEST(Poses, SayEveryPlanarRotationAsAQuaternionOfLengthOne) {
+  for (const float angle : {0.0f, 1.0f, 1.5707963f, 3.1f, 3.1415f, 3.1415925f, -3.1415f, -2.0f}) {
+    Scene scene;
+    scene.name = "turned";
+    scene.bodies.resize(1);
+    scene.bodies[0].angle = angle;
+    scene.bodies[0].shapes.resize(1);
+    scene.bodies[0].shapes[0].kind = solver::ShapeKind::kBall;
+    scene.bodies[0].shapes[0].radius = 0.5f;
+    scene.bodies[0].shapes[0].points = {{0.0f, 0.0f, 0.0f}};
+    const Pose pose = start(scene).poses()[0];
+    const float z = pose.rotation[2];
+    const float w = pose.rotation[3];
+    EXPECT_NEAR(z * z + w * w, 1.0f, 1.0e-6f) << angle;
+    EXPECT_NEAR(z, std::sin(0.5f * angle), 1.0e-6f) << angle;
+    EXPECT_NEAR(w, std::cos(0.5f * angle), 1.0e-6f) << angle;
+  }
 }
 
 }  // namespace cycloid::scenes
