@@ -61,6 +61,9 @@ enum class Event : std::uint8_t {
   kLogVerified,
   kRotation,
   kSlowPeerDropped,
+  kTokenShown,   ///< And the hello with it was good.
+  kSeatResumed,  ///< By a secret of the last welcome.
+  kQuantisedShown,
   kCount
 };
 const char* event_name(Event event);

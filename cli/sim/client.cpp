@@ -14,6 +14,8 @@ namespace {
 constexpr std::int64_t kFarewellNs = kSecond;
 constexpr std::size_t kUnsentBytesMax = std::size_t{1} << 20;
 constexpr std::size_t kReadBytes = 16384;
+/// No quantised snapshot of the scenes of a run is as large.
+constexpr std::size_t kBindsNothing_bytes = 65536;
 
 }  // namespace
 
@@ -29,6 +31,9 @@ SimClient::SimClient(const Settings& settings, const scenes::Scene& scene, Perso
   const std::int64_t drift = settings.client.drift_max_ppm;
   drift_ppm_ = random_.between(-drift, drift);
   dial_at_ns_ = random_.between(0, kSecond);
+  const server::TokenPolicy tokens = settings.server.tokens;
+  shows_token_ = tokens == server::TokenPolicy::kRequired ||
+                 (tokens == server::TokenPolicy::kOptional && random_.one_in(2));
 }
 
 void SimClient::step() {
@@ -46,11 +51,13 @@ void SimClient::dial() {
   if (!host_->listens(persona_.room)) return;
   wire_ = make_wire(settings_->network, random_, *chronicle_);
   wire_->room = persona_.room;
+  wire_->address = persona_.address;
   wire_->number = chronicle_->counted(Event::kConnection);
   host_->accept(wire_);
   RoomHost& room = host_->room(persona_.room);
   if (wire_->flips_up) room.ledger(wire_->era).excuse_inputs();
   if (wire_->flips_up || wire_->flips_down) room.excuse_desyncs();
+  dialed_ns_ = chronicle_->now_ns;
   observer_.emplace(room.ledger(wire_->era), persona_.name, *chronicle_);
   framer_.emplace(protocol::kServerMessageBytesMax);
   chronicle_->note(persona_.name + " connects: connection " + std::to_string(wire_->number));
@@ -69,6 +76,18 @@ void SimClient::make_follower() {
   options.scene_digest = scene_digest_;
   options.seat_wish = persona_.seat_wish;
   options.name = persona_.name;
+  options.profile = persona_.profile;
+  if (shows_token_) {
+    server::AdmissionToken token =
+        host_->room(persona_.room)
+            .issuer()
+            .token(host_->room(persona_.room).name(), chronicle_->now_ns);
+    token.identity = persona_.name;
+    token_ = host_->room(persona_.room).issuer().sign(token);
+    options.token = token_;
+  }
+  resumes_ = !ticket_.secret.empty();
+  options.resume = ticket_.secret;
   options.input = [this](int seat, std::uint64_t tick) {
     return honest_input(settings_->seed, seat, tick);
   };
@@ -121,20 +140,56 @@ void SimClient::take(const protocol::ServerMessage& message) {
     take_planted(message);
   }
   check_after(snapshots);
+  if (const auto* welcome = std::get_if<protocol::Welcome>(&message)) take_welcome(*welcome);
   const client::Progress& progress = follower_->progress();
   if (!progress.over()) return;
   if (progress.phase == client::Phase::kFailed) blame("fails: " + progress.reason);
   if (progress.refused) {
-    const protocol::Refusal code = progress.refused->code;
-    const bool fault =
-        code == protocol::Refusal::kBadMessage || code == protocol::Refusal::kTooLarge ||
-        code == protocol::Refusal::kProtocolVersion || code == protocol::Refusal::kSolverVersion ||
-        code == protocol::Refusal::kSceneDigest || code == protocol::Refusal::kNoSuchSeat;
-    if (code == protocol::Refusal::kTooSlow) chronicle_->count(Event::kSlowPeerDropped);
-    if (fault && wire_->up.flips() == 0) blame("is refused: " + progress.reason);
+    take_refusal(*progress.refused);
   }
   ended_ = progress.phase == client::Phase::kEnded && host_->draining();
   finish(progress.reason);
+}
+
+void SimClient::take_welcome(const protocol::Welcome& welcome) {
+  if (!follower_->welcomed()) return;
+  if (resumes_) {
+    chronicle_->count(Event::kSeatResumed);
+    if (welcome.seat != ticket_.seat) {
+      blame("came back for seat " + std::to_string(ticket_.seat) + " and was given seat " +
+            std::to_string(welcome.seat));
+    }
+  } else if (shows_token_) {
+    host_->room(persona_.room).used_token() = token_;
+  }
+  const bool is_damaged = wire_->flips_up || wire_->flips_down;
+  ticket_ = {welcome.resume, welcome.seat, wire_->era, dialed_ns_, ghosts_.empty() && !is_damaged};
+}
+
+/// Its one try comes on a new connection, in time, to the same match, and no other connection of
+/// its own or damage on the way can have used the secret.
+bool SimClient::is_owed_its_seat() const {
+  const bool in_time =
+      chronicle_->now_ns - ticket_.lost_since_ns < settings_->limits.resume.count();
+  return ticket_.is_clear && in_time && ticket_.era == wire_->era && ghosts_.empty();
+}
+
+void SimClient::take_refusal(const protocol::Refused& refused) {
+  using protocol::Refusal;
+  const Refusal code = refused.code;
+  if (code == Refusal::kTooSlow) chronicle_->count(Event::kSlowPeerDropped);
+  const bool fault = code == Refusal::kBadMessage || code == Refusal::kTooLarge ||
+                     code == Refusal::kProtocolVersion || code == Refusal::kSolverVersion ||
+                     code == Refusal::kSceneDigest || code == Refusal::kNoSuchSeat ||
+                     code == Refusal::kTokenInvalid || code == Refusal::kTokenExpired ||
+                     code == Refusal::kTokenUsed || code == Refusal::kTokenScope ||
+                     code == Refusal::kNoSuchRoom || code == Refusal::kRateLimited ||
+                     (code == Refusal::kResumeUnknown && is_owed_its_seat());
+  if (fault && wire_->up.flips() == 0) blame("is refused: " + refused.reason);
+  // A connection that is lost keeps its seat; whoever is sent away for another reason does not.
+  const bool keeps = code == Refusal::kTooSlow || code == Refusal::kReplaced;
+  if (code == Refusal::kResumeUnknown) ticket_ = {};
+  ticket_.is_clear = ticket_.is_clear && keeps;
 }
 
 void SimClient::check_after(std::uint64_t snapshots_before) {
@@ -147,7 +202,11 @@ void SimClient::check_after(std::uint64_t snapshots_before) {
     blame("is told another digest than its own");
   }
   mismatches_ = progress.mismatches;
-  observer_->check_state(*follower_);
+  if (persona_.profile == protocol::Profile::kExact) {
+    observer_->check_state(*follower_);
+  } else {
+    observer_->check_shown(*follower_, settings_->limits.snapshot_bytes_max < kBindsNothing_bytes);
+  }
 }
 
 void SimClient::send() {

@@ -21,6 +21,8 @@ struct Persona {
   std::string name;
   protocol::Mode mode = protocol::Mode::kLockstep;
   std::int32_t seat_wish = protocol::kAnySeat;
+  protocol::Profile profile = protocol::Profile::kExact;
+  server::PeerAddress address = server::PeerAddress::v4({10, 0, 0, 1});
 };
 
 /// A client that keeps the rules, on a machine and a network that do not: it connects, plays,
@@ -56,6 +58,9 @@ class SimClient {
   void dial();
   void draw_mischief();
   void make_follower();
+  void take_welcome(const protocol::Welcome& welcome);
+  void take_refusal(const protocol::Refused& refused);
+  bool is_owed_its_seat() const;
   void make_mischief();
   void disturb();
   void read();
@@ -93,7 +98,20 @@ class SimClient {
   protocol::Bytes unsent_;
   Mischief mischief_;
   std::vector<scenes::SeatInput> guess_;  ///< Of the next tick, for a plant.
+  /// The seat that the last welcome gave, and how to get it back.
+  struct Ticket {
+    std::vector<std::byte> secret;
+    std::int32_t seat = protocol::kSpectator;
+    std::size_t era = 0;
+    std::int64_t lost_since_ns = 0;  ///< Not before: the connection was begun then.
+    bool is_clear = false;           ///< Nothing that followed gives the server a reason to forget.
+  };
+  Ticket ticket_;
+  bool resumes_ = false;          ///< This connection's hello.
+  std::vector<std::byte> token_;  ///< Shown by this connection's hello.
+  bool shows_token_ = false;
   std::int64_t dial_at_ns_ = 0;
+  std::int64_t dialed_ns_ = 0;
   std::int64_t heard_local_ns_ = 0;
   std::int64_t pinged_local_ns_ = 0;
   std::int64_t farewell_until_ns_ = kNever;

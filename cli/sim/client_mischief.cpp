@@ -51,6 +51,7 @@ void SimClient::make_mischief() {
   if (now < mischief_.leave_ns || !running) return;
   mischief_.leave_ns = kNever;
   chronicle_->count(Event::kLeave);
+  ticket_ = {};
   outbox_.emplace_back(protocol::Bye{"enough"});
   send();
   finish("leaves");

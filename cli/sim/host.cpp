@@ -10,6 +10,8 @@ namespace {
 
 /// Between two reads of a log that is still written.
 constexpr std::uint64_t kCheckTicks = 150;
+/// Hellos that one address may owe at a time: all strangers call from one.
+constexpr std::uint32_t kStrangersPendingMax = 4;
 /// From the end of a room to the next start of the server.
 constexpr std::int64_t kStopNs = 3 * kSecond / 2;
 
@@ -20,14 +22,16 @@ scenes::Simulation simulation_of(const scenes::Scene& scene) {
 }  // namespace
 
 RoomHost::RoomHost(const Settings& settings, const scenes::Scene& scene, std::size_t number,
-                   SimDisk& disk, Chronicle& chronicle)
+                   const Random& random, SimDisk& disk, Chronicle& chronicle)
     : settings_(&settings),
       scene_(&scene),
       number_(number),
       disk_(&disk),
       chronicle_(&chronicle),
       scene_digest_(scenes::scene_digest(scene)),
-      scene_bytes_(scenes::to_binary(scene)) {}
+      scene_bytes_(scenes::to_binary(scene)),
+      secrets_(random.fork(1)),
+      issuer_(random.fork(2)) {}
 
 server::RoomOptions RoomHost::room_options() const {
   server::RoomOptions options;
@@ -36,8 +40,19 @@ server::RoomOptions RoomHost::room_options() const {
     options.limits.queue_bytes_max = std::size_t{1} << 30;
   }
   options.scene_digest = scene_digest_;
+  options.name = name();
   options.tick_rate_millihertz = settings_->tick_rate_millihertz;
   options.stop_on_log_error = settings_->server.stop_on_log_error;
+  return options;
+}
+
+server::GateOptions RoomHost::gate_options() const {
+  server::GateOptions options;
+  const bool trusts = settings_->plant == Plant::kGateTrustsTokens;
+  options.tokens = trusts ? server::TokenPolicy::kIgnored : settings_->server.tokens;
+  options.keys = {issuer_.public_key()};
+  options.hello_deadline_ns = settings_->limits.handshake.count();
+  options.addresses.host_pending_max = kStrangersPendingMax;
   return options;
 }
 
@@ -45,7 +60,10 @@ void RoomHost::open() {
   for (Session& session : sessions_) session.die();
   sessions_.clear();
   over_at_ns_ = kNever;
-  ledgers_.push_back(std::make_unique<Ledger>(settings_->seed, *chronicle_));
+  std::optional<scenes::Simulation> shown;
+  if (settings_->quantised_of_million != 0) shown = simulation_of(*scene_);
+  ledgers_.push_back(std::make_unique<Ledger>(settings_->seed, *chronicle_, std::move(shown)));
+  used_token_.clear();
   desyncs_excused_ = false;
   protocol::LogHeader header;
   header.scene_digest = scene_digest_;
@@ -64,17 +82,38 @@ void RoomHost::open() {
     chronicle_->note("room " + std::to_string(number_) + ": " + notice.text);
   };
   hooks.log = confirm_.get();
+  if (settings_->server.gives_resume_secrets) {
+    hooks.random = [this](std::span<std::byte> into) {
+      if (settings_->plant != Plant::kRoomGivesEqualSecrets) secrets_.fill(into);
+    };
+  }
   room_ = std::make_unique<server::Room>(room_options(), simulation_of(*scene_), std::move(hooks));
+  const auto find_room = [this](const std::string& room, const server::Admission&) {
+    const bool here = room.empty() || room == name();
+    return server::RoomVerdict{here ? server::RoomFound::kExists : server::RoomFound::kNoSuchRoom,
+                               {}};
+  };
+  gate_ = std::make_unique<server::Gate>(gate_options(), find_room);
   next_check_tick_ = kCheckTicks;
 }
 
 void RoomHost::accept(std::shared_ptr<Wire> wire) {
   wire->era = era();
-  sessions_.emplace_back(std::move(wire), *room_, settings_->limits, settings_->plant, *chronicle_);
+  sessions_.emplace_back(std::move(wire), House{gate_.get(), room_.get()}, settings_->limits,
+                         settings_->plant, *chronicle_);
+}
+
+void RoomHost::turn_away_overdue() {
+  for (const server::GateOverdue& overdue : gate_->overdue(chronicle_->now_ns)) {
+    for (Session& session : sessions_) {
+      if (session.gate_id() == overdue.id) session.turn_away(overdue.refused);
+    }
+  }
 }
 
 void RoomHost::step(std::int64_t step_ns) {
   if (!room_) return;
+  turn_away_overdue();
   for (Session& session : sessions_) session.step(step_ns);
   sessions_.remove_if([](const Session& session) { return session.closed(); });
   if (running() && chronicle_->now_ns >= room_->next_deadline_ns()) room_->advance();
@@ -126,6 +165,7 @@ void RoomHost::die(Death death) {
   if (!room_) return;
   for (Session& session : sessions_) session.die();
   sessions_.clear();
+  gate_.reset();
   room_.reset();
   check_log(death);
   check_replay();
@@ -160,7 +200,7 @@ Host::Host(const Settings& settings, const scenes::Scene& scene, const Random& r
       disk_(settings.disk, random.fork(1), chronicle) {
   rooms_.reserve(settings.rooms);
   for (std::size_t room = 0; room < settings.rooms; ++room) {
-    rooms_.emplace_back(settings, scene, room, disk_, chronicle);
+    rooms_.emplace_back(settings, scene, room, random.fork(10 + room), disk_, chronicle);
   }
   draw_misfortunes();
 }

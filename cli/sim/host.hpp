@@ -10,21 +10,23 @@
 
 #include "cli/sim/chronicle.hpp"
 #include "cli/sim/disk.hpp"
+#include "cli/sim/issuer.hpp"
 #include "cli/sim/ledger.hpp"
 #include "cli/sim/log.hpp"
 #include "cli/sim/session.hpp"
 #include "cli/sim/settings.hpp"
 #include "scenes/catalogue.hpp"
+#include "server/admission/gate.hpp"
 #include "server/room/room.hpp"
 
 namespace cycloid::sim {
 
-/// One room of the server's process, from one start of it to the next. An era is such a stretch: a
-/// match of its own, with its own log.
+/// One room of the server's process with a gate of its own, from one start of it to the next. An
+/// era is such a stretch: a match of its own, with its own log.
 class RoomHost {
  public:
-  RoomHost(const Settings& settings, const scenes::Scene& scene, std::size_t number, SimDisk& disk,
-           Chronicle& chronicle);
+  RoomHost(const Settings& settings, const scenes::Scene& scene, std::size_t number,
+           const Random& random, SimDisk& disk, Chronicle& chronicle);
 
   /// Begins the next era.
   void open();
@@ -46,6 +48,11 @@ class RoomHost {
   Ledger& ledger(std::size_t era) { return *ledgers_[era]; }
   /// Somebody in this era may say digests that are wrong.
   void excuse_desyncs() { desyncs_excused_ = true; }
+  /// What its tokens and hellos call it.
+  std::string name() const { return "room " + std::to_string(number_); }
+  Issuer& issuer() { return issuer_; }
+  /// A token that has let its bearer in, in this era; empty where none has.
+  std::vector<std::byte>& used_token() { return used_token_; }
 
   /// The log as it is now, and a read of it with one bit wrong.
   void check_log(std::optional<Death> death);
@@ -76,6 +83,8 @@ class RoomHost {
   };
 
   server::RoomOptions room_options() const;
+  server::GateOptions gate_options() const;
+  void turn_away_overdue();
   void check_seats();
   void check_room();
 
@@ -86,10 +95,14 @@ class RoomHost {
   Chronicle* chronicle_;
   std::uint64_t scene_digest_ = 0;
   std::vector<std::byte> scene_bytes_;
+  Random secrets_;
+  Issuer issuer_;
+  std::vector<std::byte> used_token_;
   std::vector<std::unique_ptr<Ledger>> ledgers_;
   std::unique_ptr<SimLog> log_;
   std::unique_ptr<Confirm> confirm_;
   std::unique_ptr<server::Room> room_;
+  std::unique_ptr<server::Gate> gate_;
   std::list<Session> sessions_;
   std::uint64_t next_check_tick_ = 0;
   std::int64_t over_at_ns_ = kNever;

@@ -7,7 +7,7 @@
 namespace cycloid::sim {
 namespace {
 
-constexpr std::uint64_t kStrangerWays = 9;
+constexpr std::uint64_t kStrangerWays = 14;
 constexpr std::uint64_t kTroubles = 8;
 constexpr std::int64_t kDripNs = 100 * kMillisecond;
 
@@ -60,8 +60,11 @@ void Hostile::dial() {
   // What it says is wrong as it is: a flip could make it right.
   wire_->up.calm();
   wire_->room = room_;
+  const bool stranger = kind_ == Kind::kStranger;
+  wire_->address =
+      server::PeerAddress::v4({10, static_cast<std::uint8_t>(stranger ? 200 : 201), 0, 1});
   wire_->number = chronicle_->counted(Event::kConnection);
-  wire_->unwelcome = kind_ == Kind::kStranger;
+  wire_->unwelcome = stranger;
   unsent_.clear();
   drip_bytes_ = 0;
   next_ns_ = now;
@@ -113,6 +116,17 @@ void Hostile::prepare_stranger() {
     case 7:  // Nothing at all.
       gone_at_ns_ = kNever;
       return;
+    case 8:  // A secret that brings no seat back.
+      hello.resume.resize(protocol::kResumeBytes);
+      random_.fill(hello.resume);
+      return say(hello);
+    case 9:
+    case 10:
+    case 11:
+    case 12:
+      hello.token = bad_token();
+      if (settings_->server.tokens == server::TokenPolicy::kIgnored) hello.scene_digest ^= 2;
+      return say(hello);
     default:  // A hello that never comes to its end: byte after byte, for ever.
       hello.name = std::string(protocol::kNameBytesMax, 'x');
       say(hello);
@@ -120,6 +134,23 @@ void Hostile::prepare_stranger() {
       gone_at_ns_ = kNever;
       return;
   }
+}
+
+/// Of nobody, out of date, for another room, or already used by somebody.
+std::vector<std::byte> Hostile::bad_token() {
+  RoomHost& room = host_->room(room_);
+  server::AdmissionToken token = room.issuer().token(room.name(), chronicle_->now_ns);
+  token.identity = "stranger";
+  const std::uint64_t way = random_.below(4);
+  if (way == 0 && !room.used_token().empty()) return room.used_token();
+  if (way == 1) token.room = "elsewhere";
+  if (way == 2) {
+    token.not_before_unix_s -= 200;
+    token.expires_unix_s -= 200;
+  }
+  std::vector<std::byte> bytes = room.issuer().sign(token);
+  if (way == 0 || way == 3) bytes[random_.below(bytes.size())] ^= std::byte{1};
+  return bytes;
 }
 
 void Hostile::prepare_troublemaker() {
@@ -131,6 +162,9 @@ void Hostile::prepare_troublemaker() {
   hello.name = "trouble\n\x7f";
   hello.mode = random_.one_in(2) ? protocol::Mode::kLockstep : protocol::Mode::kSnapshot;
   hello.seat_wish = random_.one_in(2) ? protocol::kAnySeat : protocol::kSpectator;
+  if (settings_->server.tokens != server::TokenPolicy::kIgnored) {
+    hello.token = room.issuer().sign(room.issuer().token(room.name(), chronicle_->now_ns));
+  }
   trouble_ = random_.below(kTroubles);
   say(hello);
   next_ns_ = chronicle_->now_ns + random_.between(0, 1'000) * kMillisecond;

@@ -29,6 +29,7 @@ class Hostile {
   void dial();
   void prepare_stranger();
   void prepare_troublemaker();
+  std::vector<std::byte> bad_token();
   void say(const protocol::ClientMessage& message);
   void say_garbage(std::size_t bytes);
   void make_trouble();

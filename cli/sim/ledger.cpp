@@ -50,6 +50,19 @@ void Ledger::add(const protocol::LogTick& tick) {
   }
   mix(tick);
   ticks_.push_back(tick);
+  show(tick);
+}
+
+void Ledger::show(const protocol::LogTick& tick) {
+  if (!shown_) return;
+  if (poses_.empty()) poses_.push_back(shown_->poses());
+  std::vector<scenes::SeatInput> inputs;
+  for (const protocol::SeatFrame& seat : tick.frame.seats) inputs.push_back(seat.input);
+  if (!shown_->step(inputs).ok() || shown_->digest() != tick.digest) {
+    chronicle_->violate(Invariant::kDigests, "tick " + std::to_string(tick.frame.tick) +
+                                                 " stepped beside the room has another digest");
+  }
+  poses_.push_back(shown_->poses());
 }
 
 void Ledger::mix(const protocol::LogTick& tick) {

@@ -6,6 +6,7 @@
 #include <optional>
 #include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/sim/chronicle.hpp"
@@ -22,7 +23,10 @@ scenes::SeatInput honest_input(std::uint64_t seed, int seat, std::uint64_t tick)
 class Ledger {
  public:
   /// @param seed  Of the honest inputs.
-  Ledger(std::uint64_t seed, Chronicle& chronicle) : seed_(seed), chronicle_(&chronicle) {}
+  /// @param shown  Of the scene, before its first tick: to know what every tick looks like. None:
+  /// nobody asks.
+  Ledger(std::uint64_t seed, Chronicle& chronicle, std::optional<scenes::Simulation> shown = {})
+      : seed_(seed), chronicle_(&chronicle), shown_(std::move(shown)) {}
 
   /// The next tick; checks that it can follow what there is.
   void add(const protocol::LogTick& tick);
@@ -33,6 +37,9 @@ class Ledger {
   const protocol::LogTick* at(std::uint64_t tick) const {
     return tick == 0 || tick > ticks_.size() ? nullptr : &ticks_[tick - 1];
   }
+  /// Where all bodies were after a confirmed tick, or before the first one.
+  /// @pre it was given a simulation, and 0 < ticks() >= tick.
+  const std::vector<scenes::Pose>& poses(std::uint64_t tick) const { return poses_[tick]; }
   /// Somebody in this room says what honest clients would not: given inputs are not checked.
   void excuse_inputs() { inputs_excused_ = true; }
 
@@ -45,6 +52,7 @@ class Ledger {
 
  private:
   void mix(const protocol::LogTick& tick);
+  void show(const protocol::LogTick& tick);
   void check_seat(std::uint64_t tick, std::size_t seat, const protocol::SeatFrame& said);
   void check_event(std::uint64_t tick, const protocol::FrameEvent& event);
 
@@ -54,6 +62,8 @@ class Ledger {
   std::vector<bool> held_;                     ///< By seat.
   std::vector<scenes::SeatInput> last_given_;  ///< By seat, of its holder.
   std::uint64_t digest_ = 0;
+  std::optional<scenes::Simulation> shown_;
+  std::vector<std::vector<scenes::Pose>> poses_;  ///< By tick, from 0 on.
   bool inputs_excused_ = false;
 };
 

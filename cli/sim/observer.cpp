@@ -1,8 +1,39 @@
 #include "cli/sim/observer.hpp"
 
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
 #include <variant>
+#include <vector>
+
+#include "protocol/state/quantised.hpp"
 
 namespace cycloid::sim {
+namespace {
+
+/// Of the floats in two quaternions.
+constexpr float kRounding_rad = 0.0005f;
+
+bool is_shown_as(const scenes::Pose& shown, const scenes::Pose& was) {
+  if (shown.generation != was.generation) return false;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float rounding = 4.0e-7f * std::fabs(was.position[axis]);
+    const float error = std::fabs(shown.position[axis] - was.position[axis]);
+    if (!(error <= 0.5001f * protocol::kPositionStep_m + rounding)) return false;
+  }
+  float cosine = 0.0f;  // Of half the angle between them.
+  for (std::size_t i = 0; i < 4; ++i) cosine += shown.rotation[i] * was.rotation[i];
+  const float half_rad = 0.5f * (protocol::kRotationErrorMax_rad + kRounding_rad);
+  return 1.0f - cosine * cosine <= half_rad * half_rad;
+}
+
+bool is_among(const scenes::Pose& shown, const std::vector<scenes::Pose>& were) {
+  return std::ranges::any_of(were, [&](const scenes::Pose& was) {
+    return shown.index == was.index && is_shown_as(shown, was);
+  });
+}
+
+}  // namespace
 
 void Observer::heard(const protocol::ServerMessage& message) {
   if (excused_) return;
@@ -52,22 +83,45 @@ void Observer::on_frame(const protocol::InputFrame& frame) {
   last_frame_ = frame.tick;
 }
 
-void Observer::check_state(const client::Follower& follower) {
+std::uint64_t Observer::new_tick(const client::Follower& follower) {
   const client::Progress& progress = follower.progress();
-  if (excused_ || progress.phase != client::Phase::kRunning) return;
+  if (excused_ || progress.phase != client::Phase::kRunning) return 0;
   const std::uint64_t tick = progress.last_tick;
-  if (tick == verified_tick_ || tick == 0 || follower.simulation().tick() != tick) return;
-  const protocol::LogTick* confirmed = ledger_->at(tick);
-  if (confirmed == nullptr) {
-    return wrong(Invariant::kDigests,
-                 "is at tick " + std::to_string(tick) + ", which is not confirmed");
-  }
-  if (follower.simulation().digest() != confirmed->digest) {
+  if (tick == verified_tick_ || tick == 0) return 0;
+  if (ledger_->at(tick) != nullptr) return tick;
+  wrong(Invariant::kDigests, "is at tick " + std::to_string(tick) + ", which is not confirmed");
+  return 0;
+}
+
+void Observer::check_state(const client::Follower& follower) {
+  const std::uint64_t tick = new_tick(follower);
+  if (tick == 0 || follower.simulation().tick() != tick) return;
+  if (follower.simulation().digest() != ledger_->at(tick)->digest) {
     if (disturbed_) return;
     return wrong(Invariant::kDigests,
                  "its state of tick " + std::to_string(tick) + " is not the server's");
   }
   disturbed_ = false;  // What one bit did may also die out.
+  verified_tick_ = tick;
+}
+
+void Observer::check_shown(const client::Follower& follower, bool may_lag) {
+  const std::uint64_t tick = new_tick(follower);
+  if (tick == 0) return;
+  const std::vector<scenes::Pose> shown = follower.poses();
+  const std::size_t bodies = ledger_->poses(tick).size();
+  if (shown.size() > bodies || (shown.size() < bodies && !may_lag)) {
+    return wrong(Invariant::kDigests,
+                 "shows " + std::to_string(shown.size()) + " bodies of " + std::to_string(bodies));
+  }
+  for (const scenes::Pose& pose : shown) {
+    std::uint64_t then = tick;
+    while (then > 0 && may_lag && !is_among(pose, ledger_->poses(then))) --then;
+    if (is_among(pose, ledger_->poses(then))) continue;
+    return wrong(Invariant::kDigests, "shows body " + std::to_string(pose.index) + " at tick " +
+                                          std::to_string(tick) + " where it was not");
+  }
+  chronicle_->count(Event::kQuantisedShown);
   verified_tick_ = tick;
 }
 

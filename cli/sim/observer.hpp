@@ -20,6 +20,11 @@ class Observer {
   /// After the follower took what was heard: its state is the confirmed one.
   void check_state(const client::Follower& follower);
 
+  /// The same of a follower with the quantised profile: what it shows is within the profile's error
+  /// of where each body was; of the tick that it shows, or, where the budget of bytes `may_lag`, of
+  /// one before.
+  void check_shown(const client::Follower& follower, bool may_lag);
+
   /// Its bytes were damaged on the way: what it hears is nobody's word, so nothing is checked until
   /// it connects again.
   void excuse() { excused_ = true; }
@@ -33,6 +38,8 @@ class Observer {
   std::uint64_t verified_tick() const { return verified_tick_; }
 
  private:
+  /// The confirmed tick that the follower holds, where it has not been looked at yet; else 0.
+  std::uint64_t new_tick(const client::Follower& follower);
   void on_frame(const protocol::InputFrame& frame);
   void on_exact_state(std::uint64_t tick);
   void wrong(Invariant invariant, const std::string& text) {

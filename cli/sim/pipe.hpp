@@ -9,6 +9,7 @@
 #include "cli/sim/chronicle.hpp"
 #include "cli/sim/random.hpp"
 #include "protocol/codec.hpp"
+#include "server/admission/peer_address.hpp"
 
 namespace cycloid::sim {
 
@@ -114,7 +115,8 @@ struct Wire {
   std::int64_t reset_at_ns = kNever;
   std::uint64_t number = 0;  ///< Of this connection in the run.
   std::size_t room = 0;
-  std::size_t era = 0;     ///< Of the room that accepted it; see RoomHost.
+  std::size_t era = 0;  ///< Of the room that accepted it; see RoomHost.
+  server::PeerAddress address = server::PeerAddress::v4({127, 0, 0, 1});  ///< Of the client.
   bool unwelcome = false;  ///< Its peer says nothing that a room may take for a hello.
 };
 

@@ -45,7 +45,9 @@ const char* plant_name(Plant plant) {
       "log-drops-record",
       "log-swaps-records",
       "log-forgets-sync",
-      "log-spoils-keyframe"};
+      "log-spoils-keyframe",
+      "gate-trusts-tokens",
+      "room-gives-equal-secrets"};
   return kNames[static_cast<std::size_t>(plant)];
 }
 

@@ -26,6 +26,8 @@ enum class Plant : std::uint8_t {
   kLogSwapsRecords,
   kLogForgetsSync,     ///< Of the disk: it says that it has, and has not.
   kLogSpoilsKeyframe,  ///< A bit of the state is the other one.
+  kGateTrustsTokens,   ///< Without a look at them.
+  kRoomGivesEqualSecrets,
   kCount
 };
 const char* plant_name(Plant plant);

@@ -2,7 +2,9 @@
 
 #include <array>
 #include <bit>
+#include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace cycloid::sim {
 
@@ -48,6 +50,9 @@ class Random {
   }
   bool chance(std::uint32_t per_million) { return below(kMillion) < per_million; }
   bool one_in(std::uint64_t count) { return below(count) == 0; }
+  void fill(std::span<std::byte> bytes) {
+    for (std::byte& byte : bytes) byte = static_cast<std::byte>(next() >> 56);
+  }
 
   /// A stream of its own, which depends on the seed and the name alone: what one part of a run
   /// draws shifts nothing of another part.

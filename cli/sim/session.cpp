@@ -3,6 +3,8 @@
 #include <utility>
 #include <variant>
 
+#include "cli/sim/issuer.hpp"
+
 namespace cycloid::sim {
 namespace {
 
@@ -19,15 +21,41 @@ bool is_state(const protocol::ServerMessage& message) {
 
 }  // namespace
 
-Session::Session(std::shared_ptr<Wire> wire, server::Room& room, const server::Limits& limits,
+Session::Session(std::shared_ptr<Wire> wire, const House& house, const server::Limits& limits,
                  Plant plant, Chronicle& chronicle)
     : wire_(std::move(wire)),
-      room_(&room),
+      house_(house),
       limits_(limits),
       plant_(plant),
       chronicle_(&chronicle),
-      tamper_(plant),
-      id_(room.connect()) {}
+      tamper_(plant) {
+  enter();
+}
+
+void Session::enter() {
+  const auto begun = house_.gate->begin(wire_->address, chronicle_->now_ns);
+  if (const auto* refused = std::get_if<server::GateRefused>(&begun)) return turn_away(*refused);
+  gate_id_ = std::get<server::GateId>(begun);
+}
+
+void Session::hear_at_gate(std::span<const std::byte> bytes) {
+  const std::int64_t now = chronicle_->now_ns;
+  const auto result = house_.gate->feed(gate_id_, bytes, {now, unix_s_of(now)});
+  if (const auto* refused = std::get_if<server::GateRefused>(&result)) return turn_away(*refused);
+  const auto* admitted = std::get_if<server::GateAdmitted>(&result);
+  if (admitted == nullptr) return;
+  stage_ = Stage::kRoom;
+  if (!admitted->admission.identity.empty()) chronicle_->count(Event::kTokenShown);
+  id_ = house_.room->admit(admitted->admission);
+  if (!admitted->rest.empty()) house_.room->receive(id_, admitted->rest);
+}
+
+void Session::turn_away(const server::GateRefused& refused) {
+  stage_ = Stage::kTurnedAway;
+  pending_ = refused.message;
+  written_ = 0;
+  look_at(pending_);
+}
 
 void Session::step(std::int64_t step_ns) {
   if (closed_) return;
@@ -35,7 +63,7 @@ void Session::step(std::int64_t step_ns) {
   read();
   if (!closed_) write();
   if (closed_) return;
-  if (room_->wants_close(id_) && linger_until_ns_ == kNever) {
+  if (is_dismissed() && linger_until_ns_ == kNever) {
     linger_until_ns_ = chronicle_->now_ns + kLinger;
   }
   if (chronicle_->now_ns >= linger_until_ns_) return close();
@@ -50,23 +78,25 @@ void Session::step(std::int64_t step_ns) {
 }
 
 void Session::read() {
-  while (!reader_done_ && room_->wants_bytes(id_)) {
+  while (!reader_done_ && wants_bytes()) {
     const auto bytes = wire_->up.read(kReadBytes);
     if (bytes.empty()) break;
     receive(bytes);
   }
   if (reader_done_ || !wire_->up.at_end()) return;
   reader_done_ = true;
-  const bool last_word_waits = room_->wants_close(id_) && !last_word_said_;
+  const bool last_word_waits = is_dismissed() && !last_word_said_;
   if (!last_word_waits) close();
 }
 
 void Session::receive(std::span<const std::byte> bytes) {
-  if (plant_ != Plant::kRoomExtendsDeadline || answered_) return room_->receive(id_, bytes);
+  if (stage_ == Stage::kRoom) return house_.room->receive(id_, bytes);
+  if (stage_ == Stage::kTurnedAway) return;
+  if (plant_ != Plant::kRoomExtendsDeadline) return hear_at_gate(bytes);
   said_.insert(said_.end(), bytes.begin(), bytes.end());
-  room_->disconnect(id_);
-  id_ = room_->connect();
-  room_->receive(id_, said_);
+  house_.gate->end(gate_id_);
+  enter();
+  if (stage_ == Stage::kGate) hear_at_gate(said_);
 }
 
 void Session::write() {
@@ -75,17 +105,17 @@ void Session::write() {
       written_ += wire_->down.write(std::span<const std::byte>(pending_).subspan(written_));
       if (written_ < pending_.size()) return;
     }
-    if (!room_->has_output(id_)) break;
+    if (stage_ != Stage::kRoom || !house_.room->has_output(id_)) break;
     pending_.clear();
     written_ = 0;
-    for (const server::Shared& bytes : room_->take_output(id_)) {
+    for (const server::Shared& bytes : house_.room->take_output(id_)) {
       pending_.insert(pending_.end(), bytes->begin(), bytes->end());
     }
     if (pending_.size() > limits_.queue_bytes_max) check_bound(pending_);
     if (plant_ != Plant::kNone) pending_ = tamper_.tampered(pending_);
     if (!answered_) look_at(pending_);
   }
-  if (!room_->wants_close(id_) || last_word_said_) return;
+  if (!is_dismissed() || last_word_said_) return;
   last_word_said_ = true;
   wire_->down.finish();
   if (reader_done_) close();
@@ -135,7 +165,8 @@ void Session::check_bound(const protocol::Bytes& output) {
 void Session::close() {
   if (closed_) return;
   closed_ = true;
-  room_->disconnect(id_);
+  house_.gate->end(gate_id_);
+  if (stage_ == Stage::kRoom) house_.room->disconnect(id_);
   // As the kernel: what was not read makes a reset of the end.
   if (wire_->up.held_bytes() != 0) return wire_->reset();
   wire_->down.finish();

@@ -113,6 +113,19 @@ server::Limits draw_limits(Swarm swarm) {
   return limits;
 }
 
+/// Who comes in how, and what a thin client is shown.
+void draw_admission(Settings& settings, Swarm swarm) {
+  using server::TokenPolicy;
+  settings.server.tokens =
+      swarm.pick(std::array<TokenPolicy, 4>{TokenPolicy::kIgnored, TokenPolicy::kIgnored,
+                                            TokenPolicy::kOptional, TokenPolicy::kRequired});
+  settings.server.gives_resume_secrets = swarm.random().one_in(2);
+  settings.limits.resume = std::chrono::milliseconds(swarm.random().between(500, 8'000));
+  settings.quantised_of_million = swarm.rate(500'000, kMillion);
+  settings.limits.snapshot_bytes_max =
+      swarm.pick(std::array<std::size_t, 4>{1'200, std::size_t{1} << 20, std::size_t{1} << 20, 96});
+}
+
 std::string draw_scene(Swarm& swarm) {
   const std::uint64_t choice = swarm.random().below(64);
   if (choice == 0) return "room-200";
@@ -147,6 +160,7 @@ Settings draw_settings(std::uint64_t seed) {
   settings.client = draw_client(Swarm(root.fork(103)));
   settings.server = draw_server(Swarm(root.fork(104)));
   settings.disk = draw_disk(Swarm(root.fork(105)));
+  draw_admission(settings, Swarm(root.fork(106)));
   return settings;
 }
 

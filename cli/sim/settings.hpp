@@ -10,6 +10,7 @@
 #include "cli/sim/plant.hpp"
 #include "cli/sim/random.hpp"
 #include "scenes/scene.hpp"
+#include "server/admission/gate.hpp"
 #include "server/log/log_writer.hpp"
 #include "server/room/options.hpp"
 
@@ -57,6 +58,8 @@ struct ServerSettings {
   bool stop_on_log_error = false;
   std::uint64_t keyframe_ticks = 100;  ///< Between two states in the log.
   std::uint32_t rotations = 0;         ///< Times in a run that every log goes on in another file.
+  server::TokenPolicy tokens = server::TokenPolicy::kIgnored;
+  bool gives_resume_secrets = false;  ///< Good for `limits.resume`.
 };
 
 /// All that a run depends on.
@@ -70,6 +73,7 @@ struct Settings {
   std::uint32_t hostiles = 0;       ///< Of a room: peers that are refused, whatever they try.
   std::uint32_t troublemakers = 0;  ///< Of a room: peers that are let in, and then break the rules.
   std::uint32_t snapshots_of_million = 0;  ///< Of clients, how many are fed snapshots.
+  std::uint32_t quantised_of_million = 0;  ///< Of those, how many with the quantised profile.
   bool any_seat = false;                   ///< Players take any seat, not one of their own.
   std::uint32_t tick_rate_millihertz = 60000;
   server::Limits limits;

@@ -64,6 +64,12 @@ class World {
       persona.room = room;
       persona.name = "client " + std::to_string(room) + "." + std::to_string(i);
       if (random.chance(settings_.snapshots_of_million)) persona.mode = protocol::Mode::kSnapshot;
+      const bool quantised = root_.fork(base + 300 + i).chance(settings_.quantised_of_million);
+      if (quantised && persona.mode == protocol::Mode::kSnapshot) {
+        persona.profile = protocol::Profile::kQuantised;
+      }
+      persona.address = server::PeerAddress::v4(
+          {10, static_cast<std::uint8_t>(room), 0, static_cast<std::uint8_t>(i + 1)});
       if (i >= players) persona.seat_wish = protocol::kSpectator;
       if (i < players && !settings_.any_seat) persona.seat_wish = static_cast<std::int32_t>(i);
       clients_.emplace_back(settings_, scene_, persona, root_.fork(base + 100 + i), host_,
@@ -126,7 +132,8 @@ class World {
   /// dead, and the server that the client is gone.
   void converge() {
     const std::int64_t most = settings_.client.silence_ns + settings_.limits.idle.count() +
-                              settings_.limits.handshake.count() + kConvergenceSlackNs;
+                              settings_.limits.handshake.count() + settings_.limits.resume.count() +
+                              kConvergenceSlackNs;
     const std::int64_t end = chronicle_.now_ns + most;
     while (!chronicle_.violation() && !lacks().empty()) {
       if (chronicle_.now_ns > end) {

@@ -33,6 +33,8 @@ const PlantCase kPlants[] = {
     {Plant::kLogSwapsRecords, {Invariant::kLog}},
     {Plant::kLogForgetsSync, {Invariant::kLog}},
     {Plant::kLogSpoilsKeyframe, {Invariant::kLog}},
+    {Plant::kGateTrustsTokens, {Invariant::kRefusals}},
+    {Plant::kRoomGivesEqualSecrets, {Invariant::kHonesty}},
 };
 
 class SimPlants : public testing::TestWithParam<PlantCase> {};
