@@ -64,6 +64,7 @@ enum class Event : std::uint8_t {
   kTokenShown,   ///< And the hello with it was good.
   kSeatResumed,  ///< By a secret of the last welcome.
   kQuantisedShown,
+  kRewind,
   kCount
 };
 const char* event_name(Event event);

@@ -132,6 +132,9 @@ void SimClient::read() {
 }
 
 void SimClient::take(const protocol::ServerMessage& message) {
+  if (const auto* welcome = std::get_if<protocol::Welcome>(&message)) {
+    observer_->welcomed(welcome->tick, wire_->timeline);
+  }
   observer_->heard(message);
   const std::uint64_t snapshots = follower_->progress().snapshots;
   if (settings_->plant == Plant::kNone) {

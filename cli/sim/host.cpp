@@ -10,6 +10,7 @@ namespace {
 
 /// Between two reads of a log that is still written.
 constexpr std::uint64_t kCheckTicks = 150;
+constexpr std::int64_t kRewindTicksMax = 200;
 /// Hellos that one address may owe at a time: all strangers call from one.
 constexpr std::uint32_t kStrangersPendingMax = 4;
 /// From the end of a room to the next start of the server.
@@ -99,8 +100,8 @@ void RoomHost::open() {
 
 void RoomHost::accept(std::shared_ptr<Wire> wire) {
   wire->era = era();
-  sessions_.emplace_back(std::move(wire), House{gate_.get(), room_.get()}, settings_->limits,
-                         settings_->plant, *chronicle_);
+  sessions_.emplace_back(std::move(wire), House{gate_.get(), room_.get(), ledgers_.back().get()},
+                         settings_->limits, settings_->plant, *chronicle_);
 }
 
 void RoomHost::turn_away_overdue() {
@@ -155,6 +156,14 @@ void RoomHost::check_room() {
 
 void RoomHost::rotate_log() {
   if (running()) log_->rotate();
+}
+
+void RoomHost::rewind(Random& random) {
+  if (!running() || room_->tick() == 0) return;
+  const std::int64_t back = random.between(1, kRewindTicksMax);
+  const std::uint64_t tick = room_->tick();
+  if (!room_->rewind(tick - std::min(tick, static_cast<std::uint64_t>(back)))) return;
+  chronicle_->count(Event::kRewind);
 }
 
 void RoomHost::drain() {
@@ -215,6 +224,7 @@ void Host::draw_misfortunes() {
   draw(settings_->server.pauses, pauses_ns_);
   draw(settings_->server.deaths, deaths_ns_);
   draw(settings_->server.rotations, rotations_ns_);
+  draw(settings_->server.rewinds, rewinds_ns_);
 }
 
 void Host::step(std::int64_t step_ns) {
@@ -240,6 +250,11 @@ void Host::step(std::int64_t step_ns) {
   if (!rotations_ns_.empty() && now >= rotations_ns_.back()) {
     rotations_ns_.pop_back();
     for (RoomHost& room : rooms_) room.rotate_log();
+  }
+  if (!rewinds_ns_.empty() && now >= rewinds_ns_.back()) {
+    rewinds_ns_.pop_back();
+    for (RoomHost& room : rooms_) room.rewind(random_);
+    if (disk_.killed()) return die(Death::kProcess);
   }
   for (RoomHost& room : rooms_) {
     room.step(step_ns);
@@ -276,6 +291,7 @@ void Host::calm() {
   pauses_ns_.clear();
   deaths_ns_.clear();
   rotations_ns_.clear();
+  rewinds_ns_.clear();
 }
 
 void Host::drain() {

@@ -33,6 +33,8 @@ class RoomHost {
   void accept(std::shared_ptr<Wire> wire);
   void step(std::int64_t step_ns);
   void rotate_log();
+  /// The match goes back to one of its ticks.
+  void rewind(Random& random);
   void drain();
   /// The process is gone; `disk` shows already what it has left.
   void die(Death death);
@@ -73,6 +75,10 @@ class RoomHost {
     void keyframe(std::uint64_t tick, std::uint64_t digest,
                   std::span<const std::byte> state) override {
       log_->keyframe(tick, digest, state);
+    }
+    void branch(const protocol::LogTick& from, std::span<const std::byte> state) override {
+      ledger_->branch(from.frame.tick, state);
+      log_->branch(from, state);
     }
     bool durable() const override { return log_->durable(); }
     std::string error() const override { return log_->error(); }
@@ -143,6 +149,7 @@ class Host {
   std::vector<std::int64_t> pauses_ns_;  ///< When they begin; the last first.
   std::vector<std::int64_t> deaths_ns_;
   std::vector<std::int64_t> rotations_ns_;
+  std::vector<std::int64_t> rewinds_ns_;
   std::int64_t paused_until_ns_ = 0;
   std::int64_t up_at_ns_ = 0;
   bool up_ = false;

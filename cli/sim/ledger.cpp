@@ -36,9 +36,9 @@ scenes::SeatInput honest_input(std::uint64_t seed, int seat, std::uint64_t tick)
 
 void Ledger::add(const protocol::LogTick& tick) {
   const protocol::InputFrame& frame = tick.frame;
-  if (frame.tick != ticks_.size() + 1) {
+  if (frame.tick != ticks() + 1) {
     chronicle_->violate(Invariant::kFrames, "the room made tick " + std::to_string(frame.tick) +
-                                                " behind tick " + std::to_string(ticks_.size()));
+                                                " behind tick " + std::to_string(ticks()));
     return;
   }
   held_.resize(frame.seats.size());
@@ -49,20 +49,46 @@ void Ledger::add(const protocol::LogTick& tick) {
     check_seat(frame.tick, seat, frame.seats[seat]);
   }
   mix(tick);
-  ticks_.push_back(tick);
+  now().ticks.push_back(tick);
   show(tick);
+}
+
+void Ledger::branch(std::uint64_t tick, std::span<const std::byte> state) {
+  if (tick >= ticks()) {
+    return chronicle_->violate(
+        Invariant::kFrames,
+        "the room goes back to tick " + std::to_string(tick) + " of " + std::to_string(ticks()));
+  }
+  timelines_.push_back(timelines_.back());
+  now().ticks.resize(static_cast<std::size_t>(tick));
+  held_.assign(held_.size(), false);
+  last_given_.assign(last_given_.size(), {});
+  for (const protocol::LogTick& made : now().ticks) {
+    for (const protocol::FrameEvent& event : made.frame.events) check_event(made.frame.tick, event);
+    for (std::size_t seat = 0; seat < made.frame.seats.size(); ++seat) {
+      check_seat(made.frame.tick, seat, made.frame.seats[seat]);
+    }
+  }
+  chronicle_->mix(tick);
+  if (!shown_ || now().poses.empty()) return;
+  now().poses.resize(static_cast<std::size_t>(tick) + 1);
+  const bool is_it =
+      shown_->decode(state).ok() && (tick == 0 || shown_->digest() == now().ticks.back().digest);
+  if (is_it) return;
+  chronicle_->violate(Invariant::kDigests,
+                      "the state of tick " + std::to_string(tick) + " to go on from is another");
 }
 
 void Ledger::show(const protocol::LogTick& tick) {
   if (!shown_) return;
-  if (poses_.empty()) poses_.push_back(shown_->poses());
+  if (now().poses.empty()) now().poses.push_back(shown_->poses());
   std::vector<scenes::SeatInput> inputs;
   for (const protocol::SeatFrame& seat : tick.frame.seats) inputs.push_back(seat.input);
   if (!shown_->step(inputs).ok() || shown_->digest() != tick.digest) {
     chronicle_->violate(Invariant::kDigests, "tick " + std::to_string(tick.frame.tick) +
                                                  " stepped beside the room has another digest");
   }
-  poses_.push_back(shown_->poses());
+  now().poses.push_back(shown_->poses());
 }
 
 void Ledger::mix(const protocol::LogTick& tick) {
@@ -116,13 +142,14 @@ void Ledger::check_seat(std::uint64_t tick, std::size_t seat, const protocol::Se
 }
 
 std::optional<std::string> Ledger::not_a_prefix(std::span<const protocol::LogTick> ticks,
-                                                std::uint64_t before) const {
-  if (before + ticks.size() > ticks_.size()) {
+                                                std::uint64_t before, std::size_t timeline) const {
+  const std::vector<protocol::LogTick>& all = timelines_[timeline].ticks;
+  if (before + ticks.size() > all.size()) {
     return std::to_string(before + ticks.size()) + " ticks, of which only " +
-           std::to_string(ticks_.size()) + " were confirmed";
+           std::to_string(all.size()) + " were confirmed";
   }
   for (std::size_t i = 0; i < ticks.size(); ++i) {
-    const protocol::LogTick& confirmed = ticks_[static_cast<std::size_t>(before) + i];
+    const protocol::LogTick& confirmed = all[static_cast<std::size_t>(before) + i];
     if (ticks[i].digest == confirmed.digest && ticks[i].frame == confirmed.frame) continue;
     return "tick " + std::to_string(before + i + 1) + " is not the one that was confirmed";
   }
@@ -131,7 +158,7 @@ std::optional<std::string> Ledger::not_a_prefix(std::span<const protocol::LogTic
 
 std::optional<std::string> Ledger::not_replayable(scenes::Simulation fresh) const {
   std::vector<scenes::SeatInput> inputs;
-  for (const protocol::LogTick& tick : ticks_) {
+  for (const protocol::LogTick& tick : now().ticks) {
     inputs.clear();
     for (const protocol::SeatFrame& seat : tick.frame.seats) inputs.push_back(seat.input);
     if (!fresh.step(inputs).ok()) {

@@ -19,7 +19,9 @@ namespace cycloid::sim {
 /// input of a frame can be checked.
 scenes::SeatInput honest_input(std::uint64_t seed, int seat, std::uint64_t tick);
 
-/// What one room has confirmed, from its first tick to its end: what everybody is held to.
+/// What one room has confirmed, from its first tick to its end: what everybody is held to. Where
+/// the match was taken back, the ticks before and behind that are timelines of their own, which
+/// begin alike.
 class Ledger {
  public:
   /// @param seed  Of the honest inputs.
@@ -31,23 +33,32 @@ class Ledger {
   /// The next tick; checks that it can follow what there is.
   void add(const protocol::LogTick& tick);
 
-  std::uint64_t ticks() const { return ticks_.size(); }
+  /// The match goes on from after an earlier tick, which left this state: another timeline begins.
+  void branch(std::uint64_t tick, std::span<const std::byte> state);
+  std::size_t timeline() const { return timelines_.size() - 1; }  ///< The one that goes on.
+
+  std::uint64_t ticks() const { return now().ticks.size(); }
+  std::uint64_t ticks(std::size_t timeline) const { return timelines_[timeline].ticks.size(); }
   std::uint64_t digest() const { return digest_; }  ///< Of all frames and digests.
   /// Null where it is not confirmed.
-  const protocol::LogTick* at(std::uint64_t tick) const {
-    return tick == 0 || tick > ticks_.size() ? nullptr : &ticks_[tick - 1];
+  const protocol::LogTick* at(std::uint64_t tick, std::size_t timeline) const {
+    const auto& ticks = timelines_[timeline].ticks;
+    return tick == 0 || tick > ticks.size() ? nullptr : &ticks[tick - 1];
   }
   /// Where all bodies were after a confirmed tick, or before the first one.
-  /// @pre it was given a simulation, and 0 < ticks() >= tick.
-  const std::vector<scenes::Pose>& poses(std::uint64_t tick) const { return poses_[tick]; }
+  /// @pre it was given a simulation, and 0 < ticks(timeline) >= tick.
+  const std::vector<scenes::Pose>& poses(std::uint64_t tick, std::size_t timeline) const {
+    return timelines_[timeline].poses[tick];
+  }
   /// Somebody in this room says what honest clients would not: given inputs are not checked.
   void excuse_inputs() { inputs_excused_ = true; }
 
-  /// Whether `ticks` are how this ledger goes on behind its first `before` ticks. Says where they
+  /// Whether `ticks` are how the timeline goes on behind its first `before` ticks. Says where they
   /// are not.
   std::optional<std::string> not_a_prefix(std::span<const protocol::LogTick> ticks,
-                                          std::uint64_t before = 0) const;
-  /// Steps a world by the frames and compares every digest. Says where they differ.
+                                          std::uint64_t before, std::size_t timeline) const;
+  /// Steps a world by the frames of the last timeline and compares every digest. Says where they
+  /// differ.
   std::optional<std::string> not_replayable(scenes::Simulation fresh) const;
 
  private:
@@ -58,12 +69,18 @@ class Ledger {
 
   std::uint64_t seed_;
   Chronicle* chronicle_;
-  std::vector<protocol::LogTick> ticks_;
+  struct Timeline {
+    std::vector<protocol::LogTick> ticks;
+    std::vector<std::vector<scenes::Pose>> poses;  ///< By tick, from 0 on.
+  };
+  Timeline& now() { return timelines_.back(); }
+  const Timeline& now() const { return timelines_.back(); }
+
+  std::vector<Timeline> timelines_ = std::vector<Timeline>(1);
   std::vector<bool> held_;                     ///< By seat.
   std::vector<scenes::SeatInput> last_given_;  ///< By seat, of its holder.
   std::uint64_t digest_ = 0;
   std::optional<scenes::Simulation> shown_;
-  std::vector<std::vector<scenes::Pose>> poses_;  ///< By tick, from 0 on.
   bool inputs_excused_ = false;
 };
 

@@ -15,9 +15,14 @@ SimLog::SimLog(SimDisk& disk, std::uint64_t first_file, const protocol::LogHeade
     : machine_(&disk),
       options_(options),
       chronicle_(&chronicle),
-      disk_(std::make_shared<LogDisk>(disk, first_file, options.plant)) {
+      disk_(std::make_shared<LogDisk>(disk, first_file, options.plant)),
+      header_(header) {
+  open("0", nullptr);
+}
+
+void SimLog::open(const std::string& path, const protocol::LogKeyframe* first) {
   server::LogWriterOptions writing;
-  writing.path = "0";
+  writing.path = path;
   writing.sync = options_.sync;
   writing.interval = std::chrono::milliseconds(options_.interval_ns / kMillisecond);
   writing.queue_bytes_max = options_.queue_bytes_max;
@@ -26,8 +31,24 @@ SimLog::SimLog(SimDisk& disk, std::uint64_t first_file, const protocol::LogHeade
   writing.threaded = false;
   writing.now_ns = [this] { return chronicle_->now_ns; };
   writing.unix_now_ns = writing.now_ns;
-  writing.random = [number = header.salt]() mutable { return number = scramble(number + 1); };
-  writer_ = std::make_unique<server::LogWriter>(std::move(writing), header);
+  writing.random = [number = header_.salt]() mutable { return number = scramble(number + 1); };
+  writer_ = std::make_unique<server::LogWriter>(std::move(writing), header_, first);
+}
+
+void SimLog::branch(const protocol::LogTick& from, std::span<const std::byte> state) {
+  header_.parent_log_id = writer_->log_id();
+  close(last_);
+  if (!durable() || machine_->killed()) return;
+  closed_ = false;
+  header_.salt = scramble(header_.salt + 2);
+  header_.log_id = scramble(header_.salt + 3);
+  header_.branch_tick = ticks_ = from.frame.tick;
+  last_ = {ticks_, from.digest, {}};
+  const protocol::LogKeyframe first{
+      ticks_, from.digest, from.frame.seats, {state.begin(), state.end()}};
+  branches_.push_back({files().size(), ticks_});
+  open("branch " + std::to_string(branches_.size()), &first);
+  written_ticks_ = synced_ticks_ = ticks_;
 }
 
 void SimLog::tick(const protocol::LogTick& tick) {
@@ -47,6 +68,7 @@ void SimLog::hand_over(const protocol::LogTick& tick) {
   const std::uint64_t syncs_before = disk_->syncs();
   writer_->tick(tick);
   ticks_ = tick.frame.tick;
+  last_ = {ticks_, tick.digest, {}};
   if (options_.sync == server::LogSync::kEveryTick) take_note(syncs_before);
 }
 
@@ -91,14 +113,30 @@ void SimLog::rotate() {
 
 namespace {
 
+/// What a file of the log goes on from.
+struct Origin {
+  std::uint64_t tick = 0;
+  std::uint64_t parent = 0;
+  std::size_t timeline = 0;
+};
+
+/// Of the log's file of that place, as far as the log itself says; else behind the one before.
+Origin origin_of(const SimLog& log, std::size_t file, const Origin& behind) {
+  const auto& branches = log.branches();
+  const std::size_t timeline = behind.timeline;
+  const bool branched = timeline < branches.size() && branches[timeline].file == file;
+  return branched ? Origin{branches[timeline].tick, behind.parent, timeline + 1} : behind;
+}
+
 /// The parts before the last: whole, whatever happened since, and each going on from the one
 /// before.
 std::optional<std::string> older_mistake(const Ledger& ledger, const protocol::Log& part,
-                                         std::uint64_t goes_on_from) {
-  if (part.state != protocol::LogState::kComplete) return "a rotated log: " + part.reason;
-  if (part.header.branch_tick != goes_on_from) return "a rotated log goes on from another tick";
-  if (const auto differs = ledger.not_a_prefix(part.ticks, part.header.branch_tick))
-    return "a rotated log: " + *differs;
+                                         const Origin& origin) {
+  if (part.state != protocol::LogState::kComplete) return "an older log: " + part.reason;
+  if (part.header.branch_tick != origin.tick) return "an older log goes on from another tick";
+  if (part.header.parent_log_id != origin.parent) return "an older log names another parent";
+  if (const auto differs = ledger.not_a_prefix(part.ticks, origin.tick, origin.timeline))
+    return "an older log: " + *differs;
   return {};
 }
 
@@ -114,20 +152,20 @@ bool is_good(const LogFound& found, protocol::LogState state) {
 
 std::optional<std::string> log_mistake(const LogFound& found, const SimDisk& disk) {
   using protocol::LogState;
-  std::uint64_t goes_on_from = 0;
-  std::uint64_t parent = 0;
-  for (std::size_t i = 0; i + 1 < found.log->files().size(); ++i) {
-    const protocol::Log part = protocol::read_log(disk.content(found.log->files()[i]));
-    if (const auto mistake = older_mistake(*found.ledger, part, goes_on_from)) return mistake;
-    if (part.header.parent_log_id != parent) return "a rotated log names another parent";
-    goes_on_from = part.last_tick;
-    parent = part.header.log_id;
+  const std::vector<std::uint64_t>& files = found.log->files();
+  Origin origin;
+  for (std::size_t i = 0; i + 1 < files.size(); ++i) {
+    origin = origin_of(*found.log, i, origin);
+    const protocol::Log part = protocol::read_log(disk.content(files[i]));
+    if (const auto mistake = older_mistake(*found.ledger, part, origin)) return mistake;
+    origin = {part.last_tick, part.header.log_id, origin.timeline};
   }
-  const protocol::Log read = protocol::read_log(disk.content(found.log->files().back()));
-  if (const auto differs = found.ledger->not_a_prefix(read.ticks, read.header.branch_tick))
-    return "the log: " + *differs;
-  if (read.header.branch_tick != goes_on_from || read.header.parent_log_id != parent)
+  origin = origin_of(*found.log, files.size() - 1, origin);
+  const protocol::Log read = protocol::read_log(disk.content(files.back()));
+  if (read.header.branch_tick != origin.tick || read.header.parent_log_id != origin.parent)
     return "the log does not go on from the one before";
+  if (const auto differs = found.ledger->not_a_prefix(read.ticks, origin.tick, origin.timeline))
+    return "the log: " + *differs;
 
   const bool power_cut = found.death == Death::kPower;
   const std::uint64_t owed = power_cut ? found.log->synced_ticks() : found.log->written_ticks();
@@ -148,9 +186,11 @@ std::optional<std::string> flip_mistake(const Ledger& ledger, const protocol::By
   const bool seen =
       read.state != protocol::LogState::kComplete && read.state != protocol::LogState::kOpen;
   if (!seen) return "a flipped bit of the log is not seen";
-  if (const auto differs = ledger.not_a_prefix(read.ticks, read.header.branch_tick))
-    return "a flipped bit: " + *differs;
-  return {};
+  // A log that has ended for a full disk stays in its timeline.
+  for (std::size_t timeline = 0; timeline <= ledger.timeline(); ++timeline) {
+    if (!ledger.not_a_prefix(read.ticks, read.header.branch_tick, timeline)) return {};
+  }
+  return "a flipped bit gives ticks that were not confirmed";
 }
 
 std::optional<std::string> seek_mistake(const protocol::Bytes& bytes, scenes::Simulation fresh) {

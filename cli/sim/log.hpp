@@ -35,6 +35,8 @@ class SimLog final : public server::LogSink {
   void keyframe(std::uint64_t tick, std::uint64_t digest,
                 std::span<const std::byte> state) override;
   void close(const protocol::LogFooter& footer) override;
+  /// As server::RoomLog does: closes the file and goes on in one that names it as its parent.
+  void branch(const protocol::LogTick& from, std::span<const std::byte> state) override;
   bool durable() const override { return writer_->durable(); }
   std::string error() const override { return writer_->error(); }
 
@@ -47,6 +49,12 @@ class SimLog final : public server::LogSink {
 
   /// By their numbers on the disk, the oldest first.
   const std::vector<std::uint64_t>& files() const { return disk_->files(); }
+  /// A file that begins another timeline of the ledger.
+  struct Branch {
+    std::size_t file = 0;  ///< Its place among `files`.
+    std::uint64_t tick = 0;
+  };
+  const std::vector<Branch>& branches() const { return branches_; }
   bool closed() const { return closed_; }
   /// Ticks that are on the disk for good.
   std::uint64_t synced_ticks() const { return synced_ticks_; }
@@ -54,6 +62,7 @@ class SimLog final : public server::LogSink {
   std::uint64_t written_ticks() const { return written_ticks_; }
 
  private:
+  void open(const std::string& path, const protocol::LogKeyframe* first);
   void hand_over(const protocol::LogTick& tick);
   /// What a call of the writer has done, where the process still lives.
   void take_note(std::uint64_t syncs_before);
@@ -62,6 +71,9 @@ class SimLog final : public server::LogSink {
   Options options_;
   Chronicle* chronicle_;
   std::shared_ptr<LogDisk> disk_;
+  protocol::LogHeader header_;
+  protocol::LogFooter last_;
+  std::vector<Branch> branches_;
   std::unique_ptr<server::LogWriter> writer_;
   std::optional<protocol::LogTick> kept_;  ///< Of the plant that swaps two.
   std::uint64_t ticks_ = 0;                ///< Handed over.

@@ -45,22 +45,31 @@ void Observer::heard(const protocol::ServerMessage& message) {
     if (part->offset == 0) on_exact_state(part->tick);
   }
   if (const auto* digest = std::get_if<protocol::Digest>(&message)) {
-    const protocol::LogTick* confirmed = ledger_->at(digest->tick);
+    const protocol::LogTick* confirmed = ledger_->at(digest->tick, timeline_);
     const bool first = digest->tick == 0;
     if (!first && (confirmed == nullptr || confirmed->digest != digest->digest)) {
       wrong(Invariant::kDigests,
             "heard a digest of tick " + std::to_string(digest->tick) + " that is not the server's");
     }
   }
-  if (const auto* welcome = std::get_if<protocol::Welcome>(&message)) {
-    welcomed_ = true;
-    last_frame_ = welcome->tick;
-    exact_tick_ = welcome->tick;
+  const auto* notice = std::get_if<protocol::RoomNotice>(&message);
+  if (notice == nullptr || notice->kind != protocol::NoticeKind::kRewound) return;
+  if (timeline_ == ledger_->timeline()) {
+    return wrong(Invariant::kFrames, "heard of a rewind that was none");
   }
+  ++timeline_;
+  last_frame_ = exact_tick_ = notice->value;
+  verified_tick_ = 0;
+}
+
+void Observer::welcomed(std::uint64_t tick, std::size_t timeline) {
+  welcomed_ = true;
+  timeline_ = timeline;
+  last_frame_ = exact_tick_ = tick;
 }
 
 void Observer::on_exact_state(std::uint64_t tick) {
-  if (tick > ledger_->ticks()) {
+  if (tick > ledger_->ticks(timeline_)) {
     wrong(Invariant::kFrames,
           "heard a state of tick " + std::to_string(tick) + ", which is not confirmed");
   }
@@ -69,7 +78,7 @@ void Observer::on_exact_state(std::uint64_t tick) {
 
 void Observer::on_frame(const protocol::InputFrame& frame) {
   const std::string name = "the frame of tick " + std::to_string(frame.tick);
-  const protocol::LogTick* confirmed = ledger_->at(frame.tick);
+  const protocol::LogTick* confirmed = ledger_->at(frame.tick, timeline_);
   if (confirmed == nullptr) return wrong(Invariant::kFrames, name + " is not confirmed");
   if (!(confirmed->frame == frame)) {
     return wrong(Invariant::kFrames, name + " is not the one that was confirmed");
@@ -88,7 +97,7 @@ std::uint64_t Observer::new_tick(const client::Follower& follower) {
   if (excused_ || progress.phase != client::Phase::kRunning) return 0;
   const std::uint64_t tick = progress.last_tick;
   if (tick == verified_tick_ || tick == 0) return 0;
-  if (ledger_->at(tick) != nullptr) return tick;
+  if (ledger_->at(tick, timeline_) != nullptr) return tick;
   wrong(Invariant::kDigests, "is at tick " + std::to_string(tick) + ", which is not confirmed");
   return 0;
 }
@@ -96,7 +105,7 @@ std::uint64_t Observer::new_tick(const client::Follower& follower) {
 void Observer::check_state(const client::Follower& follower) {
   const std::uint64_t tick = new_tick(follower);
   if (tick == 0 || follower.simulation().tick() != tick) return;
-  if (follower.simulation().digest() != ledger_->at(tick)->digest) {
+  if (follower.simulation().digest() != ledger_->at(tick, timeline_)->digest) {
     if (disturbed_) return;
     return wrong(Invariant::kDigests,
                  "its state of tick " + std::to_string(tick) + " is not the server's");
@@ -109,15 +118,15 @@ void Observer::check_shown(const client::Follower& follower, bool may_lag) {
   const std::uint64_t tick = new_tick(follower);
   if (tick == 0) return;
   const std::vector<scenes::Pose> shown = follower.poses();
-  const std::size_t bodies = ledger_->poses(tick).size();
+  const std::size_t bodies = ledger_->poses(tick, timeline_).size();
   if (shown.size() > bodies || (shown.size() < bodies && !may_lag)) {
     return wrong(Invariant::kDigests,
                  "shows " + std::to_string(shown.size()) + " bodies of " + std::to_string(bodies));
   }
   for (const scenes::Pose& pose : shown) {
     std::uint64_t then = tick;
-    while (then > 0 && may_lag && !is_among(pose, ledger_->poses(then))) --then;
-    if (is_among(pose, ledger_->poses(then))) continue;
+    while (then > 0 && may_lag && !is_among(pose, ledger_->poses(then, timeline_))) --then;
+    if (is_among(pose, ledger_->poses(then, timeline_))) continue;
     return wrong(Invariant::kDigests, "shows body " + std::to_string(pose.index) + " at tick " +
                                           std::to_string(tick) + " where it was not");
   }

@@ -15,6 +15,8 @@ class Observer {
   Observer(const Ledger& ledger, std::string name, Chronicle& chronicle)
       : ledger_(&ledger), name_(std::move(name)), chronicle_(&chronicle) {}
 
+  /// The room lets the client in, in this timeline of its ledger.
+  void welcomed(std::uint64_t tick, std::size_t timeline);
   /// Before the follower has it.
   void heard(const protocol::ServerMessage& message);
   /// After the follower took what was heard: its state is the confirmed one.
@@ -49,6 +51,7 @@ class Observer {
   const Ledger* ledger_;
   std::string name_;
   Chronicle* chronicle_;
+  std::size_t timeline_ = 0;  ///< Of the ledger, as far as was heard.
   std::uint64_t last_frame_ = 0;
   std::uint64_t exact_tick_ = 0;  ///< Of the last exact state announced: frames may go on there.
   std::uint64_t verified_tick_ = 0;

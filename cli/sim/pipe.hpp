@@ -117,7 +117,8 @@ struct Wire {
   std::size_t room = 0;
   std::size_t era = 0;  ///< Of the room that accepted it; see RoomHost.
   server::PeerAddress address = server::PeerAddress::v4({127, 0, 0, 1});  ///< Of the client.
-  bool unwelcome = false;  ///< Its peer says nothing that a room may take for a hello.
+  std::size_t timeline = 0;  ///< Of the room's ledger when it said its welcome.
+  bool unwelcome = false;    ///< Its peer says nothing that a room may take for a hello.
 };
 
 }  // namespace cycloid::sim

@@ -47,7 +47,8 @@ const char* plant_name(Plant plant) {
       "log-forgets-sync",
       "log-spoils-keyframe",
       "gate-trusts-tokens",
-      "room-gives-equal-secrets"};
+      "room-gives-equal-secrets",
+      "room-hides-rewind"};
   return kNames[static_cast<std::size_t>(plant)];
 }
 
@@ -68,6 +69,9 @@ protocol::Bytes OutputTamper::tampered(const protocol::Bytes& bytes) {
       continue;
     }
     protocol::ServerMessage other = *decoded.message;
+    const auto* notice = std::get_if<protocol::RoomNotice>(&other);
+    const bool rewound = notice != nullptr && notice->kind == protocol::NoticeKind::kRewound;
+    if (rewound && plant_ == Plant::kRoomHidesRewind) continue;
     auto* welcome = std::get_if<protocol::Welcome>(&other);
     if (welcome != nullptr || std::holds_alternative<protocol::Snapshot>(other) ||
         std::holds_alternative<protocol::SnapshotPart>(other)) {

@@ -28,6 +28,7 @@ enum class Plant : std::uint8_t {
   kLogSpoilsKeyframe,  ///< A bit of the state is the other one.
   kGateTrustsTokens,   ///< Without a look at them.
   kRoomGivesEqualSecrets,
+  kRoomHidesRewind,
   kCount
 };
 const char* plant_name(Plant plant);

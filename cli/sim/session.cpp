@@ -140,6 +140,7 @@ void Session::look_at(const protocol::Bytes& output) {
   const auto* welcome = std::get_if<protocol::Welcome>(&*decoded.message);
   if (welcome == nullptr) return;
   seat_ = welcome->seat;
+  wire_->timeline = house_.ledger->timeline();
   chronicle_->count(Event::kWelcome);
   chronicle_->note(name() + " is welcome at tick " + std::to_string(welcome->tick) + ", seat " +
                    std::to_string(seat_));

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "cli/sim/chronicle.hpp"
+#include "cli/sim/ledger.hpp"
 #include "cli/sim/pipe.hpp"
 #include "cli/sim/plant.hpp"
 #include "server/admission/gate.hpp"
@@ -18,6 +19,7 @@ namespace cycloid::sim {
 struct House {
   server::Gate* gate = nullptr;
   server::Room* room = nullptr;
+  const Ledger* ledger = nullptr;
 };
 
 /// The server's side of a connection, as server/host/gatehouse.cpp and server/net/session.cpp are

@@ -161,6 +161,7 @@ Settings draw_settings(std::uint64_t seed) {
   settings.server = draw_server(Swarm(root.fork(104)));
   settings.disk = draw_disk(Swarm(root.fork(105)));
   draw_admission(settings, Swarm(root.fork(106)));
+  settings.server.rewinds = Swarm(root.fork(107)).rate(1, 4);
   return settings;
 }
 

@@ -57,6 +57,7 @@ struct ServerSettings {
   std::size_t log_queue_bytes_max = std::size_t{1} << 20;
   bool stop_on_log_error = false;
   std::uint64_t keyframe_ticks = 100;  ///< Between two states in the log.
+  std::uint32_t rewinds = 0;           ///< Times in a run that every match goes back.
   std::uint32_t rotations = 0;         ///< Times in a run that every log goes on in another file.
   server::TokenPolicy tokens = server::TokenPolicy::kIgnored;
   bool gives_resume_secrets = false;  ///< Good for `limits.resume`.

@@ -35,6 +35,7 @@ const PlantCase kPlants[] = {
     {Plant::kLogSpoilsKeyframe, {Invariant::kLog}},
     {Plant::kGateTrustsTokens, {Invariant::kRefusals}},
     {Plant::kRoomGivesEqualSecrets, {Invariant::kHonesty}},
+    {Plant::kRoomHidesRewind, {Invariant::kFrames, Invariant::kHonesty}},
 };
 
 class SimPlants : public testing::TestWithParam<PlantCase> {};
