@@ -87,7 +87,13 @@ void RoomLog::keyframe(std::uint64_t tick, std::uint64_t digest, std::span<const
 void RoomLog::branch(const protocol::LogTick& from, std::span<const std::byte> state) {
   if (writer_ == nullptr) return;
   header_.parent_log_id = writer_->log_id();  // A rotation has given it another than `header_`'s.
+  const std::string ended = error();
   close_writer(last_);
+  if (!ended.empty()) {
+    writer_ = nullptr;
+    branch_error_ = ended;
+    return;
+  }
   header_.log_id = random_number();
   header_.salt = random_number();
   header_.branch_tick = from.frame.tick;
@@ -117,20 +123,31 @@ void RoomLog::close(const protocol::LogFooter& footer) {
 }
 
 void RoomLog::close_writer(const protocol::LogFooter& footer) {
-  ++*pending_;
-  auto work = [writer = writer_, footer, pending = pending_] {
+  ++closing_->pending;
+  auto work = [writer = writer_, footer, closing = closing_] {
     writer->close(footer);
-    --*pending;
+    if (!writer->durable()) {
+      const std::scoped_lock lock(closing->mutex);
+      if (closing->error.empty()) closing->error = writer->error();
+    }
+    --closing->pending;
   };
   asio::post(slow_, std::move(work));
 }
 
+std::string RoomLog::closing_error() const {
+  const std::scoped_lock lock(closing_->mutex);
+  return closing_->error;
+}
+
 bool RoomLog::durable() const {
-  return branch_error_.empty() && (writer_ == nullptr || writer_->durable());
+  const bool goes_on = branch_error_.empty() && (writer_ == nullptr || writer_->durable());
+  return goes_on && closing_error().empty();
 }
 
 std::string RoomLog::error() const {
   if (!branch_error_.empty()) return branch_error_;
+  if (std::string closing = closing_error(); !closing.empty()) return closing;
   return writer_ == nullptr ? "" : writer_->error();
 }
 

@@ -4,6 +4,7 @@
 #include <atomic>
 #include <cstdint>
 #include <memory>
+#include <mutex>
 #include <span>
 #include <string>
 
@@ -43,7 +44,7 @@ class RoomLog final : public LogSink {
   void keyframe(std::uint64_t tick, std::uint64_t digest,
                 std::span<const std::byte> state) override;
   /// Closes the file and goes on in one that names it as its parent. Where that cannot be made the
-  /// log has ended.
+  /// log has ended; one that has ended before does not begin anew.
   void branch(const protocol::LogTick& from, std::span<const std::byte> state) override;
   /// Returns at once; `settled` says when it is done.
   void close(const protocol::LogFooter& footer) override;
@@ -55,13 +56,21 @@ class RoomLog final : public LogSink {
   /// Whether there is a file, or was one. Where there never was, a room needs no log at all.
   bool kept() const { return writer_ != nullptr || !branch_error_.empty(); }
   /// Whether nothing more happens on the other thread.
-  bool settled() const { return *pending_ == 0; }
+  bool settled() const { return closing_->pending == 0; }
 
  private:
+  /// Shared with the other thread.
+  struct Closing {
+    std::atomic<int> pending{0};
+    std::mutex mutex;
+    std::string error;  ///< The first of a file that was closed.
+  };
+
   std::string new_path(std::uint64_t salt) const;
   std::string branch_path() const;
   void open(const std::string& path, const protocol::LogKeyframe* first);
   void close_writer(const protocol::LogFooter& footer);
+  std::string closing_error() const;
 
   RoomLogPlace place_;
   protocol::LogHeader header_;
@@ -69,7 +78,7 @@ class RoomLog final : public LogSink {
   std::shared_ptr<LogWriter> writer_;
   protocol::LogFooter last_;  ///< The tick that the writer's file has come to.
   std::string branch_error_;
-  std::shared_ptr<std::atomic<int>> pending_ = std::make_shared<std::atomic<int>>(0);
+  std::shared_ptr<Closing> closing_ = std::make_shared<Closing>();
 };
 
 /// The same disk, with the time of each sync counted.

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -101,6 +102,53 @@ TEST_F(RoomLogTest, ARewindBehindARotationNamesTheRotatedLog) {
   ASSERT_EQ(files.size(), 3u);
   EXPECT_EQ(from(files, 6).header.parent_log_id, from(files, 0).header.log_id);
   EXPECT_EQ(from(files, 3).header.parent_log_id, from(files, 6).header.log_id);
+}
+
+TEST_F(RoomLogTest, ARewindDoesNotBringBackALogThatHasEnded) {
+  place_.path = folder_ + "/match.cylog";
+  const auto disk = std::make_shared<ScriptedDisk>();
+  place_.disk = disk;
+  std::atomic<bool> broken{false};
+  disk->on_write = [&](int file, std::span<const std::byte> bytes, std::size_t& written) {
+    return broken ? EIO : system_disk()->write(file, bytes, written);
+  };
+  RoomLog log(place_, {}, slow_);
+  write_ticks(log, 1, 5);
+  broken = true;
+  write_ticks(log, 6, 20);
+  ASSERT_TRUE(eventually([&] { return !log.durable(); }));
+  broken = false;
+  rewind(log, 3);
+  write_ticks(log, 4, 8);
+  EXPECT_FALSE(log.durable());
+  EXPECT_NE(log.error(), "");
+  log.close({8, numbered_tick(8).digest, {}});
+  EXPECT_TRUE(eventually([&] { return log.settled(); }));
+  EXPECT_FALSE(log.durable());
+  EXPECT_EQ(logs().size(), 1u);
+}
+
+TEST_F(RoomLogTest, AnErrorInTheLastSyncOfABranchedFileIsSeen) {
+  place_.path = folder_ + "/match.cylog";
+  place_.sync = LogSync::kNone;  // Nothing but the close of a file syncs it.
+  const auto disk = std::make_shared<ScriptedDisk>();
+  place_.disk = disk;
+  std::atomic<int> first{-1};
+  std::atomic<bool> broken{false};
+  disk->on_sync = [&](int file) {
+    int none = -1;
+    first.compare_exchange_strong(none, file);
+    return broken && file == first ? EIO : system_disk()->sync(file);
+  };
+  RoomLog log(place_, {}, slow_);
+  write_ticks(log, 1, 20);
+  EXPECT_TRUE(log.durable());
+  broken = true;
+  rewind(log, 10);
+  EXPECT_TRUE(eventually([&] { return log.settled(); }));
+  EXPECT_FALSE(log.durable());
+  EXPECT_NE(log.error(), "");
+  EXPECT_EQ(logs().size(), 2u);
 }
 
 // `cycloid verify FOLDER` takes the *.cylog.
