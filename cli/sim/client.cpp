@@ -78,12 +78,10 @@ void SimClient::make_follower() {
   options.name = persona_.name;
   options.profile = persona_.profile;
   if (shows_token_) {
-    server::AdmissionToken token =
-        host_->room(persona_.room)
-            .issuer()
-            .token(host_->room(persona_.room).name(), chronicle_->now_ns);
+    RoomHost& room = host_->room(persona_.room);
+    server::AdmissionToken token = room.issuer().token(room.name(), chronicle_->now_ns);
     token.identity = persona_.name;
-    token_ = host_->room(persona_.room).issuer().sign(token);
+    token_ = room.issuer().sign(token);
     options.token = token_;
   }
   resumes_ = !ticket_.secret.empty();
