@@ -1,6 +1,7 @@
 #include "solver/constraints/contact_rolling.hpp"
 #include "solver/events.hpp"
 #include "solver/floating_point_mode.hpp"
+#include "solver/instruction_sets.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/step_memory.hpp"
 #include "solver/tracing/tracer.hpp"
@@ -91,6 +92,13 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   traced(Phase::kStore);
   stop_fast_bodies(context, state, workers, scratch);
   traced(Phase::kStop);
+}
+
+/// The width for what fills as many lanes as it likes; 0 stands for the widest, which are 8 of AVX2
+/// where they are there.
+static int widest_lanes(int lanes) {
+  if (lanes == 0) return has_avx2_kernels() ? kAvx2Lanes : 4;
+  return lanes == 8 && has_avx2_kernels() ? kAvx2Lanes : lanes;
 }
 
 /// How many blocks of `width` contacts the colouring fills.
@@ -244,7 +252,7 @@ Error World<D>::step() {
   const bool paired = find_pairs(context, state_, *workers_, scratch);
   traced(Phase::kPairs);
   if (paired) {
-    collide_pairs(context, state_, *workers_, scratch);
+    collide_pairs(widest_lanes(lanes_), context, state_, *workers_, scratch);
     traced(Phase::kCollide);  // Else there is nothing of this tick to look at.
   }
   if (!paired || scratch.contacts.size() > state_.header.limits.contacts) {

@@ -154,23 +154,6 @@ Manifold<D> collide(const Shape<D>& a, const Pose<D>& pose_a, const Shape<D>& b,
   return collide_hulls(placed_a, placed_b, a_to_b, margin);
 }
 
-static bool is_outline(ShapeKind kind) {
-  return kind == ShapeKind::kPolygon || kind == ShapeKind::kCapsule || kind == ShapeKind::kSegment;
-}
-
-Manifold<2> Collider<2>::operator()(const Shape<2>& a, const Pose<2>& pose_a, const Shape<2>& b,
-                                    const Pose<2>& pose_b, float margin,
-                                    const Polyhedra& polyhedra) {
-  if (!is_outline(a.kind) || !is_outline(b.kind))
-    return collide(a, pose_a, b, pose_b, margin, polyhedra);
-  if (shape_ != &a) {
-    hull_ = make_hull(a, pose_a.rotation, Vec<2>::zero());
-    shape_ = &a;
-  }
-  const Vec<2> a_to_b = pose_b.position - pose_a.position;
-  return hull_against_hull(hull_, make_hull(b, pose_b.rotation, a_to_b), a_to_b, margin);
-}
-
 template Manifold<2> collide(const Shape<2>&, const Pose<2>&, const Shape<2>&, const Pose<2>&,
                              float, const Polyhedra&);
 template Manifold<3> collide(const Shape<3>&, const Pose<3>&, const Shape<3>&, const Pose<3>&,

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "solver/collision/hull.hpp"
-#include "solver/collision/manifold.hpp"
+#include "solver/collision/placed_pair.hpp"
 #include "solver/state.hpp"
 
 namespace cycloid::solver {
@@ -16,25 +15,19 @@ template <int D>
 Manifold<D> collide(const Shape<D>& a, const Pose<D>& pose_a, const Shape<D>& b,
                     const Pose<D>& pose_b, float margin, const Polyhedra& polyhedra);
 
-/// Collides pair after pair, while no pose changes. What a pair has of its shape a alone is made
-/// once for pairs in a row that share it. Gives what `collide` gives.
+/// Collides many pairs of one world, while no pose changes.
 template <int D>
-class Collider {
- public:
-  Manifold<D> operator()(const Shape<D>& a, const Pose<D>& pose_a, const Shape<D>& b,
-                         const Pose<D>& pose_b, float margin, const Polyhedra& polyhedra) {
-    return collide(a, pose_a, b, pose_b, margin, polyhedra);
-  }
-};
-template <>
-class Collider<2> {
- public:
-  Manifold<2> operator()(const Shape<2>& a, const Pose<2>& pose_a, const Shape<2>& b,
-                         const Pose<2>& pose_b, float margin, const Polyhedra& polyhedra);
+struct Collider {
+  const Shape<D>* shapes;  ///< By slot.
+  const Polyhedra& polyhedra;
+  int lanes;  ///< A width of Lanes: of equal kinds of pairs so many are collided at once.
 
- private:
-  const Shape<2>* shape_ = nullptr;  ///< Whose hull it is.
-  Hull hull_;
+  /// manifolds[i] becomes what `collide` gives of pairs[i], for i in [0, count), for every width.
+  /// @pre count <= kPairGrain.
+  void operator()(const PlacedPair<D>* pairs, int count, Manifold<D>* manifolds) const;
 };
+
+/// How many pairs are collided by one call.
+inline constexpr int kPairGrain = 64;
 
 }  // namespace cycloid::solver

@@ -42,7 +42,4 @@ struct ContactKernels {
   static void rub(const StepContext<D>& context, const BlockRange<D, W>& range);
 };
 
-/// Whether this processor and this build have the kernels of kAvx2Lanes.
-bool has_avx2_kernels();
-
 }  // namespace cycloid::solver

@@ -1,7 +1,7 @@
 #pragma once
 
-#include "solver/constraints/transpose.hpp"
 #include "solver/motion.hpp"
+#include "solver/transpose.hpp"
 
 namespace cycloid::solver {
 

@@ -18,14 +18,15 @@ static float margin_of(const StepContext<D>& context, const Body<D>& a, const Bo
 }
 
 template <int D>
-static Manifold<D> collide_pair(const StepContext<D>& context, const WorldState<D>& state,
-                                const ShapePair& pair, Collider<D>& collider) {
-  const Shape<D>& shape_a = state.shapes[pair.shape_a];
-  const Shape<D>& shape_b = state.shapes[pair.shape_b];
-  const Body<D>& a = state.bodies[shape_a.body];
-  const Body<D>& b = state.bodies[shape_b.body];
-  return collider(shape_a, Pose<D>{a.position, a.rotation}, shape_b,
-                  Pose<D>{b.position, b.rotation}, margin_of(context, a, b), state.polyhedra);
+static PlacedPair<D> placed(const StepContext<D>& context, const WorldState<D>& state,
+                            const ShapePair& pair) {
+  const Body<D>& a = state.bodies[state.shapes[pair.shape_a].body];
+  const Body<D>& b = state.bodies[state.shapes[pair.shape_b].body];
+  return {{a.position, a.rotation},
+          {b.position, b.rotation},
+          pair.shape_a,
+          pair.shape_b,
+          margin_of(context, a, b)};
 }
 
 /// The impulses of the point with the same feature, so that a contact which persists starts from
@@ -103,8 +104,8 @@ static void add_contact(const WorldState<D>& state, const ShapePair& pair,
 /// the old ones in the same order. One thread does so batch by batch, while they are at hand;
 /// several find all manifolds first.
 template <int D>
-void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
-                   StepScratch<D>& scratch) {
+void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
+                   Workers& workers, StepScratch<D>& scratch) {
   scratch.contacts.clear();
   scratch.manifolds.clear();
   scratch.began.clear();
@@ -112,15 +113,16 @@ void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Wo
   const int count = static_cast<int>(scratch.pairs.size());
   const int batch = workers.count() == 1 && count > kPairGrain ? kPairGrain : count;
   scratch.pair_manifolds.resize(static_cast<std::size_t>(batch));
+  const Collider<D> collider{state.shapes.data(), state.polyhedra, lanes};
   std::uint32_t old = 0;
   for (int begin = 0; begin < count; begin += batch) {
     const ShapePair* pairs = scratch.pairs.data() + begin;
     const int size = count - begin < batch ? count - begin : batch;
     workers.parallel_for(size, kPairGrain, [&](Range range) {
-      Collider<D> collider;
+      PlacedPair<D> in_range[kPairGrain];
       for (int i = range.begin; i < range.end; ++i)
-        scratch.pair_manifolds[static_cast<std::size_t>(i)] =
-            collide_pair(context, state, pairs[i], collider);
+        in_range[i - range.begin] = placed(context, state, pairs[i]);
+      collider(in_range, range.end - range.begin, scratch.pair_manifolds.data() + range.begin);
     });
     for (int i = 0; i < size; ++i)
       add_contact(state, pairs[i], scratch.pair_manifolds[static_cast<std::size_t>(i)], old,
@@ -129,7 +131,9 @@ void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Wo
   for (; old < state.contacts.size(); ++old) pass_old(state, old, scratch);
 }
 
-template void collide_pairs(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);
-template void collide_pairs(const StepContext<3>&, const WorldState<3>&, Workers&, StepScratch<3>&);
+template void collide_pairs(int, const StepContext<2>&, const WorldState<2>&, Workers&,
+                            StepScratch<2>&);
+template void collide_pairs(int, const StepContext<3>&, const WorldState<3>&, Workers&,
+                            StepScratch<3>&);
 
 }  // namespace cycloid::solver

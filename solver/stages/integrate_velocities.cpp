@@ -1,4 +1,4 @@
-#include "solver/constraints/transpose.hpp"
+#include "solver/transpose.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {

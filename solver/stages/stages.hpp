@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/collision/collide.hpp"
 #include "solver/constraints/contact_kernels.hpp"
 #include "solver/step_context.hpp"
 #include "solver/step_scratch.hpp"
@@ -13,8 +14,8 @@ template <int D>
 bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch);
 template <int D>
-void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
-                   StepScratch<D>& scratch);
+void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
+                   Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch);
@@ -81,9 +82,8 @@ void finalize(StepScratch<D>& scratch, WorldState<D>& state);
 template <int D>
 void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state);
 
-/// Ranges of this many bodies, pairs or blocks go to one thread at a time.
+/// Ranges of this many bodies, blocks or joints go to one thread at a time; of pairs, kPairGrain.
 inline constexpr int kBodyGrain = 256;
-inline constexpr int kPairGrain = 64;
 inline constexpr int kBlockGrain = 16;
 inline constexpr int kJointGrain = 32;
 

@@ -1,0 +1,128 @@
+#include "solver/collision/collide.hpp"
+#include "solver/collision/four_cornered.hpp"
+#include "solver/collision/hull.hpp"
+
+namespace cycloid::solver {
+
+static bool is_outline(ShapeKind kind) {
+  return kind == ShapeKind::kPolygon || kind == ShapeKind::kCapsule || kind == ShapeKind::kSegment;
+}
+
+static bool has_four_corners(const Shape<2>& shape) {
+  return shape.kind == ShapeKind::kPolygon && shape.vertex_count == 4;
+}
+
+/// Collides pair after pair. What a pair has of its shape a alone is made once for pairs in a row
+/// that share it.
+class OneByOne {
+ public:
+  Manifold<2> operator()(const Collider<2>& collider, const PlacedPair<2>& pair) {
+    const Shape<2>& a = collider.shapes[pair.shape_a];
+    const Shape<2>& b = collider.shapes[pair.shape_b];
+    if (!is_outline(a.kind) || !is_outline(b.kind))
+      return collide(a, pair.pose_a, b, pair.pose_b, pair.margin, collider.polyhedra);
+    if (shape_ != &a) {
+      hull_ = make_hull(a, pair.pose_a.rotation, Vec<2>::zero());
+      shape_ = &a;
+    }
+    const Vec<2> a_to_b = pair.pose_b.position - pair.pose_a.position;
+    return hull_against_hull(hull_, make_hull(b, pair.pose_b.rotation, a_to_b), a_to_b,
+                             pair.margin);
+  }
+
+ private:
+  const Shape<2>* shape_ = nullptr;  ///< Whose hull it is.
+  Hull hull_;
+};
+
+static Manifold<2> manifold_of(const ClippedEdges& clipped, const PlacedPair<2>& pair) {
+  Manifold<2> manifold;
+  manifold.normal = {{clipped.normal[0], clipped.normal[1]}};
+  const Vec<2> a_to_b = pair.pose_b.position - pair.pose_a.position;
+  for (const ClippedEdges::Point& point : clipped.points) {
+    if (point.separation > pair.margin) continue;
+    add_point(Vec<2>{{point.at[0], point.at[1]}}, point.separation,
+              static_cast<std::uint32_t>(point.feature), a_to_b, manifold);
+  }
+  return manifold;
+}
+
+/// Which pairs of a call wait for lanes.
+struct Waiting {
+  std::uint32_t pairs[kPairGrain];
+  int count = 0;
+};
+
+/// As many pairs as there are lanes, or the `used` last ones and then the last one again.
+template <int W>
+static void collide_block(const Collider<2>& collider, const PlacedPair<2>* pairs,
+                          const std::uint32_t* waiting, int used, OneByOne& one_by_one,
+                          Manifold<2>* manifolds) {
+  LaneIndices<W> in_lane;
+  for (int lane = 0; lane < kLaneCount<W>; ++lane)
+    in_lane[lane] = waiting[lane < used ? lane : used - 1];
+  ClippedEdges clipped[kLaneCount<W>];
+  FourCornered<W>::collide(collider.shapes, pairs, in_lane, clipped);
+  for (int lane = 0; lane < used; ++lane) {
+    const std::uint32_t pair = in_lane[lane];
+    const auto outcome = static_cast<FourCorneredOutcome>(clipped[lane].outcome);
+    if (outcome == FourCorneredOutcome::kApart)
+      manifolds[pair].point_count = 0;
+    else if (outcome == FourCorneredOutcome::kClipped)
+      manifolds[pair] = manifold_of(clipped[lane], pairs[pair]);
+    else
+      manifolds[pair] = one_by_one(collider, pairs[pair]);
+  }
+}
+
+/// The pairs that wait, W at a time. The last ones, where they would leave three quarters of the
+/// lanes empty, cost less by themselves.
+template <int W>
+static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* pairs,
+                             const Waiting& waiting, OneByOne& one_by_one, Manifold<2>* manifolds) {
+  for (int begin = 0; begin < waiting.count; begin += kLaneCount<W>) {
+    const int left = waiting.count - begin;
+    const int used = left < kLaneCount<W> ? left : kLaneCount<W>;
+    if (4 * used > kLaneCount<W>) {
+      collide_block<W>(collider, pairs, waiting.pairs + begin, used, one_by_one, manifolds);
+      continue;
+    }
+    for (int i = begin; i < waiting.count; ++i)
+      manifolds[waiting.pairs[i]] = one_by_one(collider, pairs[waiting.pairs[i]]);
+  }
+}
+
+template <>
+void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>* manifolds) const {
+  OneByOne one_by_one;
+  Waiting waiting;
+  for (int i = 0; i < count; ++i) {
+    const bool waits = lanes != 1 && has_four_corners(shapes[pairs[i].shape_a]) &&
+                       has_four_corners(shapes[pairs[i].shape_b]);
+    if (waits)
+      waiting.pairs[waiting.count++] = static_cast<std::uint32_t>(i);
+    else
+      manifolds[i] = one_by_one(*this, pairs[i]);
+  }
+  switch (lanes) {
+    case 8:
+      return collide_in_lanes<8>(*this, pairs, waiting, one_by_one, manifolds);
+    case 16:
+      return collide_in_lanes<16>(*this, pairs, waiting, one_by_one, manifolds);
+    case kAvx2Lanes:
+      return collide_in_lanes<kAvx2Lanes>(*this, pairs, waiting, one_by_one, manifolds);
+    default:
+      return collide_in_lanes<4>(*this, pairs, waiting, one_by_one, manifolds);
+  }
+}
+
+template <>
+void Collider<3>::operator()(const PlacedPair<3>* pairs, int count, Manifold<3>* manifolds) const {
+  for (int i = 0; i < count; ++i) {
+    const PlacedPair<3>& pair = pairs[i];
+    manifolds[i] = collide(shapes[pair.shape_a], pair.pose_a, shapes[pair.shape_b], pair.pose_b,
+                           pair.margin, polyhedra);
+  }
+}
+
+}  // namespace cycloid::solver

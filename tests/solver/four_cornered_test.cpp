@@ -1,0 +1,115 @@
+#include <bit>
+#include <cstring>
+#include <random>
+#include <set>
+#include <vector>
+
+#include "solver/collision/collide.hpp"
+#include "solver/instruction_sets.hpp"
+#include "solver/shapes.hpp"
+#include "tests/solver/world_fixture.hpp"
+
+namespace cycloid::solver {
+
+/// Whole numbers of a quarter are drawn as often as any others: then axes tie and edges are flush.
+static float drawn(std::mt19937& random, float from, float to) {
+  if (random() % 2 == 0) return std::uniform_real_distribution<float>(from, to)(random);
+  const int quarters = static_cast<int>(4.0f * (to - from));
+  return from + 0.25f * static_cast<float>(random() % static_cast<unsigned>(quarters + 1));
+}
+
+/// A box, a lozenge, a trapezium, a polygon of five corners or a capsule; some are rounded.
+static ShapeDef<2> drawn_shape(std::mt19937& random) {
+  const float x = drawn(random, 0.25f, 1.5f);
+  const float y = drawn(random, 0.25f, 1.5f);
+  ShapeDef<2> shape = box(x, y);
+  switch (random() % 8) {
+    case 0:
+      shape.points = {{{-x, 0.0f}}, {{0.0f, -y}}, {{x, 0.0f}}, {{0.0f, y}}};
+      break;
+    case 1:
+      shape.points = {{{-x, -y}}, {{x, -y}}, {{0.5f * x, y}}, {{-0.25f * x, y}}};
+      break;
+    case 2:
+      shape.points = {{{-x, -y}}, {{x, -y}}, {{x, y}}, {{0.0f, 1.5f * y}}, {{-x, y}}};
+      break;
+    case 3:
+      shape = capsule(x, y);
+      break;
+    default:
+      break;
+  }
+  if (random() % 4 == 0) shape.radius = 0.1f;
+  return shape;
+}
+
+static Pose<2> drawn_pose(std::mt19937& random) {
+  const Vec<2> at = {{drawn(random, -1.5f, 1.5f), drawn(random, -1.5f, 1.5f)}};
+  const float quarter_turns = 1.57079632679f * static_cast<float>(random() % 4);
+  const bool is_straight = random() % 2 == 0;
+  const float angle = is_straight ? quarter_turns : drawn(random, -3.0f, 3.0f);
+  return {at, {{std::cos(angle), std::sin(angle)}}};
+}
+
+struct Crowd {
+  std::vector<Shape<2>> shapes;
+  std::vector<PlacedPair<2>> pairs;
+};
+
+static Crowd crowd(std::mt19937& random, int count) {
+  Crowd made;
+  for (int i = 0; i < 2 * count; ++i)
+    EXPECT_TRUE(append_shapes(drawn_shape(random), 0, made.shapes).ok());
+  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i)
+    made.pairs.push_back(
+        {drawn_pose(random), drawn_pose(random), 2 * i, 2 * i + 1, drawn(random, 0.0f, 0.5f)});
+  return made;
+}
+
+static void expect_same_bits(const Manifold<2>& expected, const Manifold<2>& found) {
+  ASSERT_EQ(expected.point_count, found.point_count);
+  if (expected.point_count == 0) return;
+  EXPECT_EQ(std::memcmp(&expected.normal, &found.normal, sizeof expected.normal), 0);
+  for (std::uint32_t i = 0; i < expected.point_count; ++i)
+    EXPECT_EQ(std::memcmp(&expected.points[i], &found.points[i], sizeof expected.points[i]), 0)
+        << "point " << i << " at separations " << expected.points[i].separation << " and "
+        << found.points[i].separation;
+}
+
+static std::vector<int> widths() {
+  std::vector<int> widths = {1, 4, 8, 16};
+  if (has_avx2_kernels()) widths.push_back(kAvx2Lanes);
+  return widths;
+}
+
+TEST(FourCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
+  std::mt19937 random(20261122);
+  std::set<std::uint32_t> counts;
+  std::set<std::uint32_t> kinds;  // Flipped, clipped, corners: bits of a feature.
+  for (int round = 0; round < 2000; ++round) {
+    const int count = 1 + static_cast<int>(random() % kPairGrain);
+    const Crowd made = crowd(random, count);
+    std::vector<Manifold<2>> expected;
+    for (const PlacedPair<2>& pair : made.pairs) {
+      expected.push_back(collide(made.shapes[pair.shape_a], pair.pose_a, made.shapes[pair.shape_b],
+                                 pair.pose_b, pair.margin, {}));
+      counts.insert(expected.back().point_count);
+      for (std::uint32_t i = 0; i < expected.back().point_count; ++i)
+        kinds.insert(expected.back().points[i].feature & 0x700u);
+    }
+    for (const int lanes : widths()) {
+      std::vector<Manifold<2>> found(made.pairs.size());
+      Collider<2>{made.shapes.data(), {}, lanes}(made.pairs.data(), count, found.data());
+      for (std::size_t i = 0; i < found.size(); ++i) {
+        SCOPED_TRACE(testing::Message() << "round " << round << ", pair " << i << " of " << count
+                                        << ", lanes " << lanes);
+        expect_same_bits(expected[i], found[i]);
+        ASSERT_FALSE(HasFailure());
+      }
+    }
+  }
+  EXPECT_EQ(counts, (std::set<std::uint32_t>{0, 1, 2}));
+  EXPECT_EQ(kinds, (std::set<std::uint32_t>{0, 0x100, 0x200, 0x300, 0x400, 0x500, 0x600, 0x700}));
+}
+
+}  // namespace cycloid::solver
