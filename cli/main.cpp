@@ -54,22 +54,24 @@ static Exit parse_and_run(int argc, char** argv) {
   add_run(app, action);
   add_replay(app, action);
   add_verify(app, action);
+  add_golden(app, action);
+#ifdef CYCLOID_TOOLS
   add_info(app, action);
   add_cut(app, action);
   add_export(app, action);
-  add_golden(app, action);
   add_diff(app, action);
   add_trace(app, action);
   add_bisect(app, action);
   add_profile(app, action);
   add_scene(app, action);
+  add_version(app, action);
+#endif
 #ifdef CYCLOID_EXPERIMENTS
   add_experiments(app, action);
   add_trials(app, action);
   add_chart(app, action);
   add_tune(app, action);
 #endif
-  add_version(app, action);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -82,7 +82,7 @@ def configure_command(row: Row, place: Place) -> list[str]:
                "-G", "Ninja", "-DCMAKE_BUILD_TYPE=None",
                f"-DCMAKE_CXX_COMPILER={row.compiler}",
                "-DCYCLOID_NETWORK=OFF", "-DCYCLOID_TESTS=OFF", "-DCYCLOID_EXPERIMENTS=OFF",
-               "-DCYCLOID_PROGRAM_OPTIONS=-O0",
+               "-DCYCLOID_TOOLS=OFF", "-DCYCLOID_PROGRAM_OPTIONS=-O0",
                f"-DCMAKE_PROJECT_INCLUDE={pathlib.Path(__file__).with_name('precompile.cmake')}"]
     if row.toolchain:
         command.append(f"-DCMAKE_TOOLCHAIN_FILE={place.root / 'cmake/toolchains' / row.toolchain}")

@@ -10,10 +10,11 @@ function(precompile_for_the_matrix)
     target_compile_options(${target} PRIVATE $<$<CXX_COMPILER_ID:GNU>:-w>)
   endforeach()
   # Compiled with flags of their own, which do not fit what was parsed without them.
-  set(constraints ${CMAKE_SOURCE_DIR}/solver/constraints)
+  set(solver ${CMAKE_SOURCE_DIR}/solver)
   set_source_files_properties(
-    ${constraints}/contact_kernels.cpp ${constraints}/contact_kernels_avx2.cpp
-    ${constraints}/instruction_sets.cpp
+    ${solver}/collision/four_cornered_avx2.cpp
+    ${solver}/constraints/contact_kernels.cpp ${solver}/constraints/contact_kernels_avx2.cpp
+    ${solver}/instruction_sets.cpp
     TARGET_DIRECTORY cycloid_solver PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
 endfunction()
 cmake_language(DEFER DIRECTORY ${CMAKE_SOURCE_DIR} CALL precompile_for_the_matrix)
