@@ -215,7 +215,7 @@ static Statistics statistics_of(const WorldState<D>& state, const StepScratch<D>
   statistics.contacts = static_cast<std::uint32_t>(state.contacts.size());
   statistics.colors = static_cast<std::uint32_t>(scratch.contact_coloring.colors.size());
   count_rows(state, scratch, statistics);
-  for (const Body<D>& body : state.bodies) statistics.asleep += body.asleep;
+  statistics.asleep = scratch.bodies_asleep;
   return statistics;
 }
 

@@ -80,14 +80,15 @@ struct StepScratch : KeptByWorld<D> {
   std::vector<std::uint32_t> began;    ///< Contacts that touch and did not.
   std::vector<std::uint32_t> ended;    ///< Contacts of the state that no longer touch.
   std::vector<std::uint8_t> active;    ///< By body: it took part by itself as the tick began.
-  std::uint32_t bodies_asleep = 0;     ///< Those that did not, and could move.
+  std::uint32_t bodies_asleep = 0;     ///< Those that did not, and could move; later, that do not.
 
   bool islands_are_known = false;        ///< Only where somebody wakes, or is to fall asleep.
   std::vector<std::uint32_t> islands;    ///< Parent of each body; the root is its lowest slot.
   std::vector<std::uint8_t> kept_awake;  ///< By body: something drives it.
   std::vector<std::uint8_t> island_flags;
-  std::vector<std::uint8_t> awake;  ///< By body, and 0 for the resting one of unused lanes.
-  std::vector<int> live_contacts;   ///< Those with a manifold; the others are asleep.
+  std::vector<std::uint8_t> awake;          ///< By body, and 0 for the resting one of unused lanes.
+  std::vector<std::uint32_t> awake_bodies;  ///< Their slots, ascending: alone they move.
+  std::vector<int> live_contacts;           ///< Those with a manifold; the others are asleep.
 
   std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
   std::vector<BodyMass<D>> masses;
@@ -105,13 +106,13 @@ struct StepScratch : KeptByWorld<D> {
   IslandSolver<D> islands_solved;
   std::vector<float> tree_wanted;
   std::vector<float> tree_impulses;
-  std::vector<float> stops;  ///< By body: the fraction of the tick at which it meets something.
+  std::vector<float> stops;  ///< Of awake_bodies: the fraction of the tick at which one stops.
   ParticleScratch<D> particles;
-  WorldState<D> before;                ///< Of worlds with particles, to undo a tick that faults.
+  WorldState<D> before;  ///< Of worlds with particles, to undo a tick that faults.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>,
              ContactBlocks<D, kAvx2Lanes>>
       contact_blocks;                          ///< Only that of the chosen width is filled.
-  std::vector<Acceleration<D>> accelerations;  ///< By body.
+  std::vector<Acceleration<D>> accelerations;  ///< Of awake_bodies.
   std::uint32_t poses = 0;  ///< Grows whenever positions have moved in this tick.
 };
 

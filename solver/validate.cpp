@@ -92,6 +92,7 @@ Error validate(const BodyDef<D>& def) {
   if (!within(def.gravity_scale, -1.0e3f, 1.0e3f)) return invalid("gravity_scale");
   if (def.kind == BodyKind::kStatic && dot(def.velocity, def.velocity) != 0.0f)
     return invalid("velocity");
+  if (def.kind == BodyKind::kStatic && dot(def.spin, def.spin) != 0.0f) return invalid("spin");
   return {};
 }
 

@@ -56,7 +56,10 @@ static bool is_reachable(const Body<D>& body) {
   if (!weighs || !within(body.position, kPositionMax)) return false;
   if (!within(dot(body.rotation, body.rotation), 0.99f, 1.01f)) return false;
   if (!within(body.velocity, kSpeedMax) || !within(body.spin, kSpinMax)) return false;
-  if (!within(body.force, kForceMax) || !within(body.torque, kForceMax)) return false;
+  const float force_max = moves ? kForceMax : 0.0f;
+  if (!within(body.force, force_max) || !within(body.torque, force_max)) return false;
+  const float motion = dot(body.velocity, body.velocity) + dot(body.spin, body.spin);
+  if (body.kind == BodyKind::kStatic && motion != 0.0f) return false;
   if (!within(body.linear_damping, 0.0f, 1.0e4f) || !within(body.angular_damping, 0.0f, 1.0e4f))
     return false;
   if (!within(body.gravity_scale, -1.0e3f, 1.0e3f)) return false;

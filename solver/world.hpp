@@ -131,7 +131,8 @@ class World {
   Result<PinId> create_pin(const PinDef<D>& def);
   Error destroy_pin(PinId id);
 
-  Error apply_force(BodyId id, const Vec<D>& force_n);  ///< At the centre of mass.
+  /// At the centre of mass, in the coming tick. A body without mass does not answer.
+  Error apply_force(BodyId id, const Vec<D>& force_n);
   Error apply_torque(BodyId id, const Spin<D>& torque_n_m);
   Error apply_impulse(BodyId id, const Vec<D>& impulse_n_s);
   Error apply_angular_impulse(BodyId id, const Spin<D>& impulse_n_m_s);

@@ -25,14 +25,19 @@ static bool add_within(Vec<N>& sum, const Vec<N>& change, float bound) {
 template <int D>
 Error World<D>::apply_force(BodyId id, const Vec<D>& force_n) {
   if (const Error error = check(id); !error.ok()) return error;
-  if (!add_within(state_.bodies[id.index].force, force_n, kForceMax)) return invalid("force_n");
+  Body<D>& body = state_.bodies[id.index];
+  const Vec<D> answered = body.inverse_mass == 0.0f ? Vec<D>::zero() : force_n;
+  if (!within(force_n, kForceMax) || !add_within(body.force, answered, kForceMax))
+    return invalid("force_n");
   return {};
 }
 
 template <int D>
 Error World<D>::apply_torque(BodyId id, const Spin<D>& torque_n_m) {
   if (const Error error = check(id); !error.ok()) return error;
-  if (!add_within(state_.bodies[id.index].torque, torque_n_m, kForceMax))
+  Body<D>& body = state_.bodies[id.index];
+  const Spin<D> answered = body.inverse_mass == 0.0f ? Spin<D>::zero() : torque_n_m;
+  if (!within(torque_n_m, kForceMax) || !add_within(body.torque, answered, kForceMax))
     return invalid("torque_n_m");
   return {};
 }

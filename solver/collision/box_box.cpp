@@ -37,7 +37,7 @@ static void try_face(int axis, float offset, float radius, const AxisTolerance& 
 }
 
 static BoxFaceAxis best_face_of_a(const Solid& a, const Solid& b, const Relative& relative,
-                               const AxisTolerance& tolerance) {
+                                  const AxisTolerance& tolerance) {
   BoxFaceAxis best;
   for (int i = 0; i < 3; ++i) {
     const float* row = relative.absolute[i];
@@ -49,7 +49,7 @@ static BoxFaceAxis best_face_of_a(const Solid& a, const Solid& b, const Relative
 
 /// Seen from b, whose centre is then the other's: hence the minus.
 static BoxFaceAxis best_face_of_b(const Solid& a, const Solid& b, const Relative& relative,
-                               const AxisTolerance& tolerance) {
+                                  const AxisTolerance& tolerance) {
   BoxFaceAxis best;
   for (int j = 0; j < 3; ++j) {
     float offset = 0.0f;
@@ -77,7 +77,7 @@ static constexpr float kParallelSquared = 1.0e-6f;
 
 /// The first edge pair that exceeds `threshold`, and of later ones what is better beyond tolerance.
 static CrossAxis best_edges(const Solid& a, const Solid& b, const Relative& relative,
-                           const AxisTolerance& tolerance, float threshold) {
+                            const AxisTolerance& tolerance, float threshold) {
   CrossAxis best;
   for (int i = 0; i < 3; ++i) {
     const int i1 = i == 2 ? 0 : i + 1;

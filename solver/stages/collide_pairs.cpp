@@ -58,19 +58,31 @@ static std::uint64_t key_of(const Contact<D>& contact) {
   return ShapePair{contact.shape_a, contact.shape_b}.key();
 }
 
-/// An old contact whose pair has no points, or was not found. Those of bodies that both do nothing
-/// are kept as they are, without a manifold: nobody looked for their pairs, and nothing has moved.
+/// Whether neither body of an old contact takes part by itself.
 template <int D>
-static void pass_old(const WorldState<D>& state, std::uint32_t index, StepScratch<D>& scratch) {
-  const Contact<D>& old = state.contacts[index];
-  const std::uint32_t a = state.shapes[old.shape_a].body;
-  const std::uint32_t b = state.shapes[old.shape_b].body;
-  if (scratch.active[a] != 0 || scratch.active[b] != 0) {
-    if (old.touching != 0) scratch.ended.push_back(index);
-    return;
+static bool rests(const Contact<D>& old, const PairCache<D>& cache) {
+  return (cache.active[old.shape_a] | cache.active[old.shape_b]) == 0;
+}
+
+/// The old contacts from `old` on whose key is below `key`: their pairs have no points, or were not
+/// found. Those of bodies that both do nothing are kept as they are, without a manifold: nobody
+/// looked for their pairs, and nothing has moved. There may be very many, so they are copied at
+/// once.
+template <int D>
+static void pass_old(const WorldState<D>& state, std::uint64_t key, std::uint32_t& old,
+                     StepScratch<D>& scratch) {
+  const auto count = static_cast<std::uint32_t>(state.contacts.size());
+  const auto is_passed = [&] { return old < count && key_of(state.contacts[old]) < key; };
+  while (is_passed()) {
+    const std::uint32_t begin = old;
+    while (is_passed() && rests(state.contacts[old], scratch.pair_cache)) ++old;
+    scratch.contacts.insert(scratch.contacts.end(), state.contacts.begin() + begin,
+                            state.contacts.begin() + old);
+    scratch.manifolds.resize(scratch.contacts.size());
+    if (!is_passed()) return;
+    if (state.contacts[old].touching != 0) scratch.ended.push_back(old);
+    ++old;
   }
-  scratch.contacts.push_back(old);
-  scratch.manifolds.push_back({});
 }
 
 /// Lists the contact of a pair with points. `old` is where to go on among the old contacts.
@@ -78,9 +90,9 @@ template <int D>
 static void add_contact(const WorldState<D>& state, const ShapePair& pair,
                         const Manifold<D>& manifold, std::uint32_t& old, StepScratch<D>& scratch) {
   const auto count = static_cast<std::uint32_t>(state.contacts.size());
-  for (; old < count && key_of(state.contacts[old]) < pair.key(); ++old)
-    pass_old(state, old, scratch);
+  pass_old(state, pair.key(), old, scratch);
   if (manifold.point_count == 0) return;
+  scratch.live_contacts.push_back(static_cast<int>(scratch.contacts.size()));
   const bool persists = old < count && key_of(state.contacts[old]) == pair.key();
   const Contact<D>* before = persists ? &state.contacts[old] : nullptr;
   Contact<D>& contact = scratch.contacts.emplace_back();
@@ -99,15 +111,16 @@ static void add_contact(const WorldState<D>& state, const ShapePair& pair,
 /// which contacts began and ended.
 ///
 /// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes
-/// pair_manifolds, contacts, manifolds, began and ended. Each pair writes its own manifold;
-/// contacts are then listed in the order of the pairs, which is that of the shapes' slots, beside
-/// the old ones in the same order. One thread does so batch by batch, while they are at hand;
-/// several find all manifolds first.
+/// pair_manifolds, contacts, manifolds, which contacts are live, began and ended. Each pair writes
+/// its own manifold; contacts are then listed in the order of the pairs, which is that of the
+/// shapes' slots, beside the old ones in the same order. One thread does so batch by batch, while
+/// they are at hand; several find all manifolds first.
 template <int D>
 void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
                    Workers& workers, StepScratch<D>& scratch) {
   scratch.contacts.clear();
   scratch.manifolds.clear();
+  scratch.live_contacts.clear();
   scratch.began.clear();
   scratch.ended.clear();
   const int count = static_cast<int>(scratch.pairs.size());
@@ -128,7 +141,7 @@ void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>
       add_contact(state, pairs[i], scratch.pair_manifolds[static_cast<std::size_t>(i)], old,
                   scratch);
   }
-  for (; old < state.contacts.size(); ++old) pass_old(state, old, scratch);
+  pass_old(state, ~std::uint64_t{0}, old, scratch);
 }
 
 template void collide_pairs(int, const StepContext<2>&, const WorldState<2>&, Workers&,

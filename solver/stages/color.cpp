@@ -67,8 +67,9 @@ static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_
 /// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes;
 /// or, where the tuning asks for an order, one line of each.
 ///
-/// Reads joints, contacts, shapes and the kinds of bodies; writes both colourings. Serial, because
-/// each choice depends on those before; a function of ids alone, so not of workers or history.
+/// Reads joints, live contacts, shapes and the kinds of bodies; writes both colourings. Serial,
+/// because each choice depends on those before; a function of ids alone, so not of workers or
+/// history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   const auto moves = [&](std::uint32_t body) { return state.bodies[body].inverse_mass > 0.0f; };
@@ -79,10 +80,7 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
     if (joint.kind == JointKind::kFree) continue;
     if (scratch.awake[joint.body_a] != 0 || scratch.awake[joint.body_b] != 0) joints.push_back(i);
   }
-  std::vector<int>& contacts = scratch.live_contacts;
-  contacts.clear();
-  for (int i = 0; i < static_cast<int>(scratch.manifolds.size()); ++i)
-    if (scratch.manifolds[static_cast<std::size_t>(i)].point_count > 0) contacts.push_back(i);
+  const std::vector<int>& contacts = scratch.live_contacts;
   const Order order = state.header.tuning.order;
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;

@@ -10,8 +10,7 @@ namespace cycloid::solver {
 /// order, so every machine names the same body.
 template <int D>
 Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch) {
-  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
-    if (scratch.awake[i] == 0) continue;
+  for (const std::uint32_t i : scratch.awake_bodies) {
     const Motion<D>& motion = scratch.motions[i];
     FaultField field = kFaultNone;
     if (!within(motion.spin, kSpinMax)) field = kFaultSpin;
@@ -39,12 +38,10 @@ static void take_contacts(const std::vector<Contact<D>>& from, std::vector<Conta
 /// before this stage left the state as it was, so a fault costs nothing to undo.
 template <int D>
 void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+  for (const std::uint32_t i : scratch.awake_bodies) {
     Body<D>& body = state.bodies[i];
-    if (body.kind == BodyKind::kFree) continue;
     body.force = Vec<D>::zero();
     body.torque = Spin<D>::zero();
-    if (scratch.awake[i] == 0) continue;
     const Motion<D>& motion = scratch.motions[i];
     body.velocity = motion.velocity;
     body.spin = motion.spin;

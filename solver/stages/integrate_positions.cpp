@@ -90,26 +90,28 @@ static bool turn_inertia(float h, const Body<3>& body, const Motion<3>& motion, 
   return true;
 }
 
-/// x' = x + h v and q' = exp(h w) q of a body; see integrate_positions.
+/// x' = x + h v and q' = exp(h w) q of the body at a place of awake_bodies; see
+/// integrate_positions.
 template <int D>
-static void move_body(float h, const Body<D>& body, std::size_t i, StepScratch<D>& scratch) {
-  Motion<D>& motion = scratch.motions[i];
+static void move_body(float h, const WorldState<D>& state, std::size_t place,
+                      StepScratch<D>& scratch) {
+  const std::uint32_t slot = scratch.awake_bodies[place];
+  const Body<D>& body = state.bodies[slot];
+  Motion<D>& motion = scratch.motions[slot];
   motion.delta_position += h * motion.velocity;
   turn_freely(h, body, motion);
-  const bool turned = turn_inertia(h, body, motion, scratch.masses[i]);
-  scratch.inertia_turned[i] = turned ? 1 : 0;
+  const bool turned = turn_inertia(h, body, motion, scratch.masses[slot]);
+  scratch.inertia_turned[slot] = turned ? 1 : 0;
   if (!turned) return;
-  const Spin<D> rate = scratch.masses[i].inverse_inertia * body.torque;
+  const Spin<D> rate = scratch.masses[slot].inverse_inertia * body.torque;
   for (int axis = 0; axis < Dim<D>::kSpin; ++axis)
-    scratch.accelerations[i].rate[D + axis] = rate[axis];
+    scratch.accelerations[place].rate[D + axis] = rate[axis];
 }
 
-/// The same for four bodies of the plane in lanes, to the bit as turn_by does it. Only those in
-/// `wanted` are written.
-static void move_four(float h, LaneBits wanted, Motion<2>* motions) {
+/// The same for four bodies of the plane in lanes, to the bit as turn_by does it.
+static void move_four(float h, const LaneIndices<4>& bodies, Motion<2>* motions) {
   using L = Lanes<4>;
-  constexpr LaneIndices<4> kNext = {0, 1, 2, 3};
-  MotionLanes<2, 4> motion = gather<2, 4>(motions, kNext);
+  MotionLanes<2, 4> motion = gather<2, 4>(motions, bodies);
   motion.delta_position += L(h) * motion.velocity;
   const L turn = L(h) * motion.spin[0];
   Rotation<2, L> by;
@@ -125,35 +127,33 @@ static void move_four(float h, LaneBits wanted, Motion<2>* motions) {
     // What does not turn keeps its bits; what is no number does not.
     q = select(square > L(0.0f), to, select(square < L(1.0f), q, to));
   }
-  scatter_pose(motion, wanted, kNext, motions);
+  scatter_pose(motion, kAllLanes<4>, bodies, motions);
 }
 
 /// x' = x + h v,  q' = exp(h w) q, at unit length; in space I(q') w' = I(q) w.
 ///
-/// Reads each motion's velocity and spin, and its pseudo-velocity where there are any; writes its
-/// deltas, and its inverse inertia in the world. Any split into ranges gives the same bits.
+/// Reads velocity and spin of each motion that is awake, and its pseudo-velocity where there are
+/// any; writes its deltas, and its inverse inertia in the world. Any split into ranges gives the
+/// same bits.
 template <int D>
 void integrate_positions(const StepContext<D>& context, const WorldState<D>& state,
                          Workers& workers, StepScratch<D>& scratch) {
   const bool pseudo = context.tuning.stabilisation == Stabilisation::kSplitImpulse;
-  workers.parallel_for(static_cast<int>(state.bodies.size()), kBodyGrain, [&](Range range) {
+  const std::vector<std::uint32_t>& bodies = scratch.awake_bodies;
+  workers.parallel_for(static_cast<int>(bodies.size()), kBodyGrain, [&](Range range) {
     auto i = static_cast<std::size_t>(range.begin);
     const auto end = static_cast<std::size_t>(range.end);
     if constexpr (Dim<D>::kSpin == 1) {
-      for (; !pseudo && i + 4 <= end; i += 4) {
-        LaneBits awake = 0;
-        for (std::size_t lane = 0; lane < 4; ++lane)
-          awake |= (scratch.awake[i + lane] != 0 ? LaneBits{1} : LaneBits{0}) << lane;
-        if (awake != 0) move_four(context.h, awake, &scratch.motions[i]);
-      }
+      for (; !pseudo && i + 4 <= end; i += 4)
+        move_four(context.h, {bodies[i], bodies[i + 1], bodies[i + 2], bodies[i + 3]},
+                  scratch.motions.data());
     }
     for (; i < end; ++i) {
-      if (scratch.awake[i] == 0) continue;
-      move_body(context.h, state.bodies[i], i, scratch);
+      move_body(context.h, state, i, scratch);
       if (!pseudo) continue;
-      Motion<D>& motion = scratch.motions[i];
-      motion.delta_position += context.h * scratch.saved_motions[i].velocity;
-      turn_by(context.h * scratch.saved_motions[i].spin, motion);
+      Motion<D>& motion = scratch.motions[bodies[i]];
+      motion.delta_position += context.h * scratch.saved_motions[bodies[i]].velocity;
+      turn_by(context.h * scratch.saved_motions[bodies[i]].spin, motion);
     }
   });
 }

@@ -1,32 +1,31 @@
-#include "solver/transpose.hpp"
 #include "solver/stages/stages.hpp"
+#include "solver/transpose.hpp"
 
 namespace cycloid::solver {
 
 /// v' = (v + h (s g + f / m)) / (1 + h c),  w' = (w + h I^-1 torque) / (1 + h c_w): implicit in the
 /// damping c [1/s], so stable for every h.
 ///
-/// Reads the acceleration of each body; writes its motion's velocity and spin. Bodies without mass
-/// keep theirs. Any split into ranges gives the same bits.
+/// Reads the acceleration of each body that is awake; writes its motion's velocity and spin. Bodies
+/// without mass keep theirs. Any split into ranges gives the same bits.
 template <int D>
 void integrate_velocities(const StepContext<D>& context, Workers& workers,
                           StepScratch<D>& scratch) {
   using L = Lanes<4>;
   const L h(context.h);
-  workers.parallel_for(static_cast<int>(scratch.accelerations.size()), kBodyGrain,
-                       [&](Range range) {
-                         for (auto i = static_cast<std::size_t>(range.begin);
-                              i < static_cast<std::size_t>(range.end); ++i) {
-                           const Acceleration<D>& acceleration = scratch.accelerations[i];
-                           for (int quad = 0; quad < kVelocityQuads<D>; ++quad) {
-                             const L factor = L::load(acceleration.factor + 4 * quad);
-                             const L rate = L::load(acceleration.rate + 4 * quad);
-                             L moved(load_quad(scratch.motions[i], quad));
-                             moved = factor * (moved + h * rate);
-                             store_quad(moved.raw, quad, scratch.motions[i]);
-                           }
-                         }
-                       });
+  workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const Acceleration<D>& acceleration = scratch.accelerations[static_cast<std::size_t>(i)];
+      Motion<D>& motion = scratch.motions[scratch.awake_bodies[static_cast<std::size_t>(i)]];
+      for (int quad = 0; quad < kVelocityQuads<D>; ++quad) {
+        const L factor = L::load(acceleration.factor + 4 * quad);
+        const L rate = L::load(acceleration.rate + 4 * quad);
+        L moved(load_quad(motion, quad));
+        moved = factor * (moved + h * rate);
+        store_quad(moved.raw, quad, motion);
+      }
+    }
+  });
 }
 
 template void integrate_velocities(const StepContext<2>&, Workers&, StepScratch<2>&);

@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include "solver/collision/collide.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trace.hpp"
@@ -60,7 +62,8 @@ static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scr
   const auto sleeps = [&](std::uint32_t body) {
     return scratch.active[body] == 0 && state.bodies[body].inverse_mass > 0.0f;
   };
-  for (const Contact<D>& contact : scratch.contacts) {
+  for (const int live : scratch.live_contacts) {  // Of all others both bodies do nothing.
+    const Contact<D>& contact = scratch.contacts[static_cast<std::size_t>(live)];
     const std::uint32_t a = state.shapes[contact.shape_a].body;
     const std::uint32_t b = state.shapes[contact.shape_b].body;
     if (scratch.active[a] == scratch.active[b]) continue;
@@ -79,8 +82,13 @@ static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scr
 template <int D>
 static void collide_woken(const StepContext<D>& context, const WorldState<D>& state,
                           StepScratch<D>& scratch) {
+  std::vector<int>& live = scratch.live_contacts;
+  live.clear();
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
-    if (scratch.manifolds[i].point_count > 0) continue;
+    if (scratch.manifolds[i].point_count > 0) {
+      live.push_back(static_cast<int>(i));
+      continue;
+    }
     Contact<D>& contact = scratch.contacts[i];
     const Shape<D>& a = state.shapes[contact.shape_a];
     const Shape<D>& b = state.shapes[contact.shape_b];
@@ -91,25 +99,32 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
         collide(a, pose_a, b, pose_b, context.tuning.speculative_distance, state.polyhedra);
     // Neither body has moved since the contact was kept, so its points and impulses still belong to
     // each other; a contact that is gone all the same is solved as one without points.
-    if (manifold.point_count == contact.point_count) scratch.manifolds[i] = manifold;
+    if (manifold.point_count != contact.point_count) continue;
+    scratch.manifolds[i] = manifold;
+    if (manifold.point_count > 0) live.push_back(static_cast<int>(i));
   }
 }
 
-/// Islands of bodies that contacts and joints hold together, and which bodies are awake in this
-/// tick: a sleeping island wakes as a whole when one that moves touches it. Where none does, who is
-/// awake is who is active, and islands are not looked for; unless somebody writes the step down.
-///
-/// Reads contacts, joints, bodies and who is active; writes islands, awake, kept_awake and the
-/// manifolds of contacts that woke. Serial; a function of ids alone.
+/// Lists who is awake. A world may be full of bodies that are not, so eight are passed at a time.
 template <int D>
-void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
-                  StepScratch<D>& scratch) {
+static void list_awake(StepScratch<D>& scratch) {
+  const std::vector<std::uint8_t>& awake = scratch.awake;
+  const auto count = static_cast<std::uint32_t>(awake.size());
+  scratch.awake_bodies.clear();
+  for (std::uint32_t begin = 0; begin < count; begin += 8) {
+    const std::uint32_t end = begin + 8 < count ? begin + 8 : count;
+    std::uint64_t flags = 0;
+    std::memcpy(&flags, awake.data() + begin, end - begin);
+    if (flags == 0) continue;
+    for (std::uint32_t i = begin; i < end; ++i)
+      if (awake[i] != 0) scratch.awake_bodies.push_back(i);
+  }
+}
+
+/// Wakes the islands that somebody active, or who drives, belongs to. Whether any body woke.
+template <int D>
+static bool wake_by_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
   const std::size_t count = state.bodies.size();
-  scratch.awake.assign(scratch.active.begin(), scratch.active.end());
-  scratch.awake.push_back(0);
-  scratch.islands_are_known = false;
-  const bool is_written = scratch.trace != nullptr && scratch.trace->listener == nullptr;
-  if (!is_written && !wakes_somebody(state, scratch)) return;
   find_islands(state, scratch.contacts, scratch);
   scratch.island_flags.assign(count, 0);
   for (std::uint32_t i = 0; i < count; ++i)
@@ -119,9 +134,29 @@ void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!(state.bodies[i].inverse_mass > 0.0f)) continue;
     scratch.awake[i] = scratch.island_flags[root_of(scratch.islands, i)];
-    woke = woke || (scratch.awake[i] != 0 && scratch.active[i] == 0);
+    if (scratch.awake[i] == 0 || scratch.active[i] != 0) continue;
+    woke = true;
+    --scratch.bodies_asleep;
   }
-  if (woke) collide_woken(context, state, scratch);
+  return woke;
+}
+
+/// Islands of bodies that contacts and joints hold together, and which bodies are awake in this
+/// tick: a sleeping island wakes as a whole when one that moves touches it. Where none does, who is
+/// awake is who is active, and islands are not looked for; unless somebody writes the step down.
+///
+/// Reads contacts, joints, bodies and who is active; writes islands, awake, kept_awake, the
+/// manifolds of contacts that woke, and which contacts are live. Serial; a function of ids alone.
+template <int D>
+void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
+                  StepScratch<D>& scratch) {
+  scratch.awake.assign(scratch.active.begin(), scratch.active.end());
+  scratch.awake.push_back(0);
+  scratch.islands_are_known = false;
+  const bool is_written = scratch.trace != nullptr && scratch.trace->listener == nullptr;
+  if ((is_written || wakes_somebody(state, scratch)) && wake_by_islands(state, scratch))
+    collide_woken(context, state, scratch);
+  list_awake(scratch);
 }
 
 /// Counts the ticks at rest. Whether a body has rested for long enough to fall asleep.
@@ -141,13 +176,11 @@ static bool rests_long(const StepContext<D>& context, Body<D>& body) {
 /// rested for long, and, of bodies that fall asleep, velocities. Serial, in slot order.
 template <int D>
 void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state) {
-  const auto takes_part = [&](std::uint32_t i) {
-    return scratch.awake[i] != 0 && state.bodies[i].inverse_mass != 0.0f;
-  };
+  const auto takes_part = [&](std::uint32_t i) { return state.bodies[i].inverse_mass != 0.0f; };
   std::vector<std::uint8_t>& restless = scratch.island_flags;
-  restless.assign(state.bodies.size(), 0);
+  restless.resize(state.bodies.size());
   bool any_rests = false;
-  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+  for (const std::uint32_t i : scratch.awake_bodies) {
     if (!takes_part(i)) continue;
     const bool rests = rests_long(context, state.bodies[i]);
     restless[i] = rests ? 0 : 1;
@@ -156,14 +189,17 @@ void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldS
   if (!any_rests || !(context.tuning.sleep_s > 0.0f)) return;
   if (!scratch.islands_are_known) find_islands(state, state.contacts, scratch);
   for (std::uint32_t i = 0; i < state.bodies.size(); ++i)
+    if (scratch.awake[i] == 0 || !takes_part(i)) restless[i] = 0;
+  for (const std::uint32_t i : scratch.awake_bodies)
     if (takes_part(i) && (restless[i] != 0 || scratch.kept_awake[i] != 0))
       restless[root_of(scratch.islands, i)] = 1;
-  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+  for (const std::uint32_t i : scratch.awake_bodies) {
     if (!takes_part(i) || restless[root_of(scratch.islands, i)] != 0) continue;
     Body<D>& body = state.bodies[i];
     body.asleep = 1;
     body.velocity = Vec<D>::zero();
     body.spin = Spin<D>::zero();
+    ++scratch.bodies_asleep;
   }
 }
 

@@ -3,14 +3,14 @@
 namespace cycloid::solver {
 
 /// (s g + f / m) and I^-1 torque, and what damping c [1/s] leaves: 1 / (1 + h c), which is
-/// implicit, so stable for every h. Bodies without mass and those asleep keep their velocities.
+/// implicit, so stable for every h. Bodies without mass keep their velocities.
 template <int D>
 static Acceleration<D> acceleration_of(const StepContext<D>& context, const Body<D>& body,
-                                       const BodyMass<D>& mass, bool awake) {
+                                       const BodyMass<D>& mass) {
   Acceleration<D> of;
   for (float& factor : of.factor) factor = 1.0f;
   for (float& rate : of.rate) rate = -0.0f;
-  if (body.inverse_mass == 0.0f || !awake) return of;
+  if (body.inverse_mass == 0.0f) return of;
   const Vec<D> linear = body.gravity_scale * context.gravity + body.inverse_mass * body.force;
   const Spin<D> angular = mass.inverse_inertia * body.torque;
   for (int i = 0; i < D; ++i) {
@@ -24,29 +24,31 @@ static Acceleration<D> acceleration_of(const StepContext<D>& context, const Body
   return of;
 }
 
-/// I^-1 in the world frame = R I_body^-1 R^T, and the motion at the start of the tick.
+/// I^-1 in the world frame = R I_body^-1 R^T, and the motion at the start of the tick. A body that
+/// is not awake is at rest, and none that is awake can push it: to its neighbours it has no mass.
 ///
-/// Reads each body's velocity, rotation, mass, forces and damping; writes its own entries of
-/// motions, masses and accelerations, so any split into ranges gives the same bits.
+/// Reads the velocity, rotation, mass, forces and damping of who is awake; writes motions, masses,
+/// and the accelerations of who is awake, each body its own, so any split into ranges gives the
+/// same bits.
 template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch) {
   const std::size_t count = state.bodies.size();
-  scratch.motions.resize(count + 1);
-  scratch.masses.resize(count + 1);
-  scratch.accelerations.resize(count);
-  scratch.motions[count] = Motion<D>{};
-  scratch.motions[count].delta_rotation = identity_rotation<D>();
-  scratch.masses[count] = BodyMass<D>{};
+  Motion<D> resting{};
+  resting.delta_rotation = identity_rotation<D>();
+  scratch.motions.assign(count + 1, resting);
+  scratch.masses.assign(count + 1, BodyMass<D>{});
   scratch.inertia_turned.assign(count + 1, 0);
-  workers.parallel_for(static_cast<int>(count), kBodyGrain, [&](Range range) {
-    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
-         ++i) {
-      const Body<D>& body = state.bodies[i];
-      scratch.motions[i] = {body.velocity, body.spin, Vec<D>::zero(), identity_rotation<D>()};
-      scratch.masses[i] = {body.inverse_mass, world_inertia(body.inverse_inertia, body.rotation)};
-      scratch.accelerations[i] =
-          acceleration_of(context, body, scratch.masses[i], scratch.awake[i] != 0);
+  scratch.accelerations.resize(scratch.awake_bodies.size());
+  workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      const std::uint32_t slot = scratch.awake_bodies[place];
+      const Body<D>& body = state.bodies[slot];
+      scratch.motions[slot] = {body.velocity, body.spin, Vec<D>::zero(), identity_rotation<D>()};
+      scratch.masses[slot] = {body.inverse_mass,
+                              world_inertia(body.inverse_inertia, body.rotation)};
+      scratch.accelerations[place] = acceleration_of(context, body, scratch.masses[slot]);
     }
   });
 }

@@ -7,8 +7,8 @@ namespace cycloid::solver {
 template <int D>
 static void take_velocities(const StepContext<D>& context, const WorldState<D>& state,
                             StepScratch<D>& scratch) {
-  for (std::size_t i = 0; i < state.bodies.size(); ++i) {
-    if (state.bodies[i].inverse_mass == 0.0f || scratch.awake[i] == 0) continue;
+  for (const std::uint32_t i : scratch.awake_bodies) {
+    if (state.bodies[i].inverse_mass == 0.0f) continue;
     Motion<D>& motion = scratch.motions[i];
     const Motion<D>& before = scratch.saved_motions[i];
     motion.velocity = context.inverse_h * (motion.delta_position - before.delta_position);

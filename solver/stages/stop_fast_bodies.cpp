@@ -103,27 +103,29 @@ static float earliest_impact(const StepContext<D>& context, const WorldState<D>&
 /// before. Its velocity stays; the contact of the next tick answers to it. The rest of its way is
 /// lost.
 ///
-/// Reads motions, shapes, the tree and the boxes of find_pairs; writes first the stop of each body,
-/// from the ways of all as the sweeps left them, then the deltas. So any split into ranges gives
-/// the same bits.
+/// Reads motions, shapes, the tree and the boxes of find_pairs; writes first the stop of each body
+/// that is awake, from the ways of all as the sweeps left them, then the deltas. So any split into
+/// ranges gives the same bits.
 template <int D>
 void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
   if (context.tuning.continuous == 0) return;
-  scratch.stops.assign(state.bodies.size(), 1.0f);
-  workers.parallel_for(static_cast<int>(state.bodies.size()), kPairGrain, [&](Range range) {
-    for (auto i = static_cast<std::uint32_t>(range.begin);
-         i < static_cast<std::uint32_t>(range.end); ++i) {
-      if (scratch.awake[i] == 0 || is_slow(context, state.bodies[i], scratch.motions[i])) continue;
-      const BodySweep<D> sweep = sweep_of(context, state, scratch, i);
-      if (is_fast(state.bodies[i], sweep))
-        scratch.stops[i] = earliest_impact(context, state, scratch, i, sweep);
+  const std::vector<std::uint32_t>& bodies = scratch.awake_bodies;
+  scratch.stops.assign(bodies.size(), 1.0f);
+  workers.parallel_for(static_cast<int>(bodies.size()), kPairGrain, [&](Range range) {
+    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
+         ++i) {
+      const Body<D>& body = state.bodies[bodies[i]];
+      if (is_slow(context, body, scratch.motions[bodies[i]])) continue;
+      const BodySweep<D> sweep = sweep_of(context, state, scratch, bodies[i]);
+      if (is_fast(body, sweep))
+        scratch.stops[i] = earliest_impact(context, state, scratch, bodies[i], sweep);
     }
   });
-  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+  for (std::size_t i = 0; i < bodies.size(); ++i) {
     if (scratch.stops[i] == 1.0f) continue;
-    const BodySweep<D> sweep = sweep_of(context, state, scratch, i);
-    Motion<D>& motion = scratch.motions[i];
+    const BodySweep<D> sweep = sweep_of(context, state, scratch, bodies[i]);
+    Motion<D>& motion = scratch.motions[bodies[i]];
     motion.delta_position = scratch.stops[i] * sweep.translation;
     motion.delta_rotation = rotation_by(scratch.stops[i] * sweep.turn);
   }

@@ -32,6 +32,7 @@ TEST(CreateBody, RefusesEachMistakeByItsFieldAndChangesNothing) {
       {"velocity", -1, [](auto& b, auto&) { b.velocity[0] = kNan; }},
       {"velocity", -1, [](auto& b, auto&) { b.kind = BodyKind::kStatic, b.velocity[0] = 1.0f; }},
       {"spin", -1, [](auto& b, auto&) { b.spin[0] = -kInfinity; }},
+      {"spin", -1, [](auto& b, auto&) { b.kind = BodyKind::kStatic, b.spin[0] = 1.0f; }},
       {"mass", -1, [](auto& b, auto&) { b.mass = -1.0f; }},
       {"mass", -1, [](auto& b, auto&) { b.mass = kNan; }},
       {"mass", -1, [](auto& b, auto&) { b.kind = BodyKind::kParticle; }},
@@ -250,6 +251,22 @@ TEST(Ids, DestroyedBodyTakesItsJointsAndContactsWithIt) {
   EXPECT_EQ(world.destroy_joint(id).code, Code::kUnknownId);
   step(world, 60);
   EXPECT_NEAR(view(world, b).position[1], 0.5f, 0.02f);
+}
+
+TEST(Setters, ForceAndTorqueOfABodyWithoutMassAreLookedAtAndNotKept) {
+  World<2> world = make_world<2>();
+  for (const BodyKind kind : {BodyKind::kStatic, BodyKind::kKinematic}) {
+    BodyDef<2> def;
+    def.kind = kind;
+    const BodyId id = add(world, def, ball<2>(0.5f));
+    const std::uint64_t before = world.digest();
+    EXPECT_TRUE(world.apply_force(id, {{1.0f, 2.0f}}).ok());
+    EXPECT_TRUE(world.apply_torque(id, {{3.0f}}).ok());
+    EXPECT_EQ(world.digest(), before);
+    EXPECT_STREQ(world.apply_force(id, {{kNan, 0.0f}}).field, "force_n");
+    EXPECT_STREQ(world.apply_torque(id, {{kInfinity}}).field, "torque_n_m");
+    EXPECT_EQ(world.digest(), before);
+  }
 }
 
 TEST(Setters, RefuseWhatIsNotFiniteAndChangeNothing) {

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <set>
+
 #include "tests/solver/world_fixture.hpp"
 
 namespace cycloid::solver {
@@ -68,6 +70,26 @@ TEST(Sleep, ABallThatFallsOnTheTopWakesTheWholeIslandAndNoOther) {
   for (const BodyId id : spared) EXPECT_TRUE(sleeps(world, id));
   // The blow takes momentum from the ball from the first tick on: it does not bounce off a rock.
   EXPECT_GT(view(world, ball_id).position[1], 3.2f);
+}
+
+// A ball rolls from stack to stack, so that islands fall asleep and wake while others sleep on.
+TEST(Sleep, TheStatisticsCountWhoSleepsInEveryTick) {
+  World<2> world = make_world(with_gravity<2>());
+  add_ground<2>(world, up<2>());
+  for (int i = 0; i < 4; ++i) add_stack(world, 3, 4.0f * static_cast<float>(i));
+  const BodyId ball_id = add_at<2>(world, {{-6.0f, 1.5f}}, ball<2>(1.5f));
+  std::set<std::uint32_t> counts;
+  for (int tick = 0; tick < 900; ++tick) {
+    if (tick == 200) {
+      ASSERT_TRUE(world.set_velocity(ball_id, {{6.0f, 0.0f}}, {{-4.0f}}).ok());
+    }
+    step(world, 1);
+    std::uint32_t asleep = 0;
+    for (const Body<2>& body : world.state().bodies) asleep += body.asleep;
+    ASSERT_EQ(world.statistics().asleep, asleep) << "tick " << tick;
+    counts.insert(asleep);
+  }
+  EXPECT_GT(counts.size(), 3u);
 }
 
 TEST(Sleep, EveryCallThatCouldMatterWakes) {
