@@ -86,8 +86,15 @@ void ContactKernels<D, W>::forget_bounces(const BlockRange<D, W>& range) {
 
 template <int D, int W>
 void ContactKernels<D, W>::bounce(const StepContext<D>& context, const BlockRange<D, W>& range) {
-  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
-    block->bounced = bounce_block(context, *block, range.motions);
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    block->bounced = false;
+    if (!block->bounces) continue;
+    MotionLanes<D, W> a;
+    MotionLanes<D, W> b;
+    gather_pair(range, *block, a, b);
+    block->bounced = bounce_points(context, *block, a, b);
+    if (block->bounced) scatter_pair(range, *block, a, b);
+  }
 }
 
 template <int D, int W>

@@ -26,28 +26,25 @@ L rebound_speed(const L& restitution, const L& u, const L& gap, const L& pull, c
 /// row. Deviation from Catto, Solver2D (2024), which restores the approach speed at the end of the
 /// tick: there e = 1 loses the height fallen between and what third bodies did meanwhile, and a gas
 /// of twenty elastic discs loses its energy.
-/// @returns whether any did.
+/// @returns whether any did. @pre the block is placed where the bodies are.
 template <int D, int W>
-bool bounce_block(const StepContext<D>& context, ContactBlock<D, W>& block, Motion<D>* motions) {
+bool bounce_points(const StepContext<D>& context, ContactBlock<D, W>& block, MotionLanes<D, W>& a,
+                   MotionLanes<D, W>& b) {
   using L = Lanes<W>;
-  if (!block.bounces) return false;
   bool any = false;
   const L zero(0.0f);
   const L h(context.h);
-  MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
-  MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
-    const Arms<D, L> arms = arms_of(block, point, a, b);
-    const L gap = separation_of(block, point, a, b);
+    const Arms<D, L>& arms = point.arms;
     const L speed = relative_speed(block.normal, arms, a, b);
     const L approach = speed + block.pull * h;
-    const L rebound = rebound_speed(block.restitution, approach, gap, block.pull, h);
-    const L meets = select(gap + h * speed < zero, L(1.0f), zero);
+    const L meets = select(point.gap + h * speed < zero, L(1.0f), zero);
     const L fast = select(approach < L(-context.tuning.restitution_threshold), meets, zero);
     const L bounces = select(block.restitution > zero, fast, zero);
     if (!any_above_zero(bounces)) continue;
     any = true;
+    const L rebound = rebound_speed(block.restitution, approach, point.gap, block.pull, h);
     // With the arms where they are now: an effective mass of the tick's start would add energy.
     const L k = coupling(block, block.normal, arms, block.normal, arms);
     const L has_mass = select(point.normal_mass > zero, bounces, zero);
@@ -55,10 +52,7 @@ bool bounce_block(const StepContext<D>& context, ContactBlock<D, W>& block, Moti
     point.bounce_impulse += impulse;
     apply_pair(impulse * block.normal, arms, block, a, b);
   }
-  if (!any) return false;
-  scatter(a, block.moves_a, block.body_a, motions);
-  scatter(b, block.moves_b, block.body_b, motions);
-  return true;
+  return any;
 }
 
 }  // namespace cycloid::solver

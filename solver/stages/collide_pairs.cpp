@@ -76,9 +76,11 @@ static void pass_old(const WorldState<D>& state, std::uint64_t key, std::uint32_
   while (is_passed()) {
     const std::uint32_t begin = old;
     while (is_passed() && rests(state.contacts[old], scratch.pair_cache)) ++old;
-    scratch.contacts.insert(scratch.contacts.end(), state.contacts.begin() + begin,
-                            state.contacts.begin() + old);
-    scratch.manifolds.resize(scratch.contacts.size());
+    if (begin != old) {
+      scratch.contacts.insert(scratch.contacts.end(), state.contacts.begin() + begin,
+                              state.contacts.begin() + old);
+      scratch.manifolds.resize(scratch.contacts.size());
+    }
     if (!is_passed()) return;
     if (state.contacts[old].touching != 0) scratch.ended.push_back(old);
     ++old;
