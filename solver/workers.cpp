@@ -27,16 +27,14 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
 namespace cycloid::solver {
 
 /// How often a thread looks for what it waits for before it sleeps, some tens of microseconds in
-/// all. To wake a sleeping thread takes longer than most of the hundred jobs of a step. Where there
-/// are more threads than processors, looking only keeps the others from working.
-static int looks_of(int workers) {
-  return workers <= static_cast<int>(std::thread::hardware_concurrency()) ? 200 : 0;
-}
+/// all: to wake a sleeping thread takes longer than most of the hundred jobs of a step. It yields
+/// between looks, so where there are more workers than processors the others go on meanwhile.
+static constexpr int kLooks = 200;
 
 /// Returns once `value` is not `old`, or sooner.
 template <class T>
-static void wait_while(const std::atomic<T>& value, T old, int looks) {
-  for (int i = 0; i < looks; ++i) {
+static void wait_while(const std::atomic<T>& value, T old) {
+  for (int i = 0; i < kLooks; ++i) {
     if (value.load() != old) return;
     std::this_thread::yield();
   }
@@ -55,7 +53,6 @@ struct Workers::Threads {
   std::atomic<int> next{0};
   std::atomic<int> busy{0};
   std::atomic<bool> stop{false};
-  int looks = 0;
   int size = 0;
   int grain = 1;
   void* context = nullptr;
@@ -68,7 +65,7 @@ Workers::Workers(int count) : count_(count) {
 
 Workers::~Workers() = default;
 
-Workers::Threads::Threads(int count) : looks(looks_of(count + 1)) {
+Workers::Threads::Threads(int count) {
   for (int i = 0; i < count; ++i) threads.emplace_back([this] { thread_main(); });
 }
 
@@ -91,8 +88,7 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
   pool.generation.notify_all();
   pool.run_chunks();
   // The job's fields may only be written again when every thread has left it.
-  for (int busy = pool.busy.load(); busy != 0; busy = pool.busy.load())
-    wait_while(pool.busy, busy, pool.looks);
+  for (int busy = pool.busy.load(); busy != 0; busy = pool.busy.load()) wait_while(pool.busy, busy);
 }
 
 void Workers::Threads::run_chunks() {
@@ -103,7 +99,7 @@ void Workers::Threads::run_chunks() {
 void Workers::Threads::thread_main() {
   // Generation 0 is the constructor's: a thread that starts late still sees the first job.
   for (std::uint32_t seen = 0;;) {
-    wait_while(generation, seen, looks);
+    wait_while(generation, seen);
     seen = generation.load();
     if (stop.load()) return;
     run_chunks();

@@ -65,12 +65,13 @@ static const std::vector<Rule>& rules() {
        {"x = __builtin_sinf(a);", "x = __builtin_sqrt(a);", "__builtin_prefetch(p);"},
        "x = __builtin_sqrtf(a);",
        true},
-      {R"(\bthis_thread\b|\bthread::id\b|\bget_id\s*\(|\bhardware_concurrency\b|\bpthread_|)"
-       R"(std::(async|jthread|future|promise)\b)",
+      // To yield says nothing of who runs.
+      {R"(\bthis_thread\b(?!::yield\(\))|\bthread::id\b|\bget_id\s*\(|)"
+       R"(\bhardware_concurrency\b|\bpthread_|std::(async|jthread|future|promise)\b)",
        "nothing may depend on which thread runs it, or on how many: ranges of solver/workers.hpp",
        {"auto i = std::this_thread::get_id();", "std::thread::id id;",
         "n = std::thread::hardware_concurrency();"},
-       "const BodyId id = body_id(i);",
+       "const BodyId id = body_id(i); std::this_thread::yield();",
        true},
       {R"(\b(secure_)?getenv\s*\(|\bset(env|locale)\s*\(|std::locale\b|\b(sysconf|getpid)\s*\()",
        "a world is a function of its own calls, not of the machine: a field of WorldDef or Tuning",
