@@ -40,6 +40,13 @@ struct BodyMass {
   Inertia<D> inverse_inertia;  ///< World frame at the start of the tick.
 };
 
+template <int D>
+bool can_turn(const BodyMass<D>& mass) {
+  for (const float value : mass.inverse_inertia.m)
+    if (value != 0.0f) return true;
+  return false;
+}
+
 /// The rotation by the vector `turn` [rad], exact and not its linearisation: a body that spins
 /// freely keeps its rate.
 Rotation<2> rotation_by(const Spin<2>& turn);

@@ -2,10 +2,6 @@
 
 namespace cycloid::solver {
 
-static Error invalid(const char* field, int index = -1) {
-  return {Code::kInvalid, field, index};
-}
-
 Error validate(const Tuning& t) {
   if (t.substeps < 1 || t.substeps > 64) return invalid("substeps");
   if (t.sweeps < 1 || t.sweeps > 1000) return invalid("sweeps");

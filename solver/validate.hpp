@@ -22,6 +22,11 @@ inline constexpr std::uint32_t kSweepsMax = 8192;
 
 inline constexpr float kSteeringMax = 1.6f;  ///< rad
 
+/// The refusal of a field, of element `index` where it has several.
+constexpr Error invalid(const char* field, int index = -1) {
+  return {Code::kInvalid, field, index};
+}
+
 /// False for NaN too.
 inline bool within(float value, float lower, float upper) {
   return value >= lower && value <= upper;

@@ -3,10 +3,6 @@
 
 namespace cycloid::solver {
 
-static Error invalid(const char* field) {
-  return {Code::kInvalid, field};
-}
-
 bool exists(JointKind kind, int spin) {
   switch (kind) {
     case JointKind::kGear:

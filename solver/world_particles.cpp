@@ -6,10 +6,6 @@
 
 namespace cycloid::solver {
 
-static constexpr Error invalid(const char* field) {
-  return {Code::kInvalid, field};
-}
-
 template <class Slots, class Id>
 static bool lives(const Slots& slots, const Id& id) {
   return id.index < slots.size() && slots[id.index].kind != 0 &&

@@ -9,10 +9,6 @@
 
 namespace cycloid::solver {
 
-static constexpr Error invalid(const char* field) {
-  return {Code::kInvalid, field};
-}
-
 /// Adds `change` to `sum` unless that leaves the bound; then nothing has changed.
 template <int N>
 static bool add_within(Vec<N>& sum, const Vec<N>& change, float bound) {

@@ -92,5 +92,9 @@ constexpr std::uint32_t clip_feature(bool on_b, std::uint32_t reference_face,
                                      std::uint32_t incident_edge, std::uint32_t clip_edge) {
   return (on_b ? 0x80000000u : 0u) | (reference_face << 20) | (incident_edge << 10) | clip_edge;
 }
+/// In place of a clip edge: the point is a corner of the incident solid, in place of its edge.
+inline constexpr std::uint32_t kCorner = 0x3ffu;
+/// The feature of nearest points that are not on an axis of either solid's own.
+inline constexpr std::uint32_t kNearest = 0x60000000u;
 
 }  // namespace cycloid::solver

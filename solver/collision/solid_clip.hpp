@@ -96,9 +96,6 @@ std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal);
 FacePair opposed_to(const Solid& a, const Solid& b, std::uint32_t face, bool on_b,
                     float separation);
 
-/// In place of a clip edge: the point is a corner of the incident solid, in place of its edge.
-inline constexpr std::uint32_t kCorner = 0x3ffu;
-
 /// A convex face of n corners cut by m planes has at most n + m.
 inline constexpr std::size_t kClipMax = 2 * kHullVerticesMax;
 

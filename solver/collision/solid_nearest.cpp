@@ -3,9 +3,6 @@
 
 namespace cycloid::solver {
 
-/// The features of the points of solids apart whose nearest features are not an axis' own.
-static constexpr std::uint32_t kNearest = 0x60000000u;
-
 /// The extent of a solid along a direction, m.
 struct Extent {
   float low;

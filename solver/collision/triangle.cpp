@@ -10,7 +10,7 @@ static Vec<3> unit(const Vec<3>& vector, const Vec<3>& fallback) {
 Border border_of(const Solid& triangle, std::uint32_t edge) {
   const Vec<3> normal = triangle.normals[0];
   const Vec<3> origin = triangle.vertices[edge];
-  const Vec<3> along = triangle.vertices[edge == 2 ? 0 : edge + 1] - origin;
+  const Vec<3> along = triangle.vertices[next_corner(edge)] - origin;
   Border border;
   border.outward = unit(cross(along, normal), normal);
   border.into = border.outward;

@@ -31,6 +31,11 @@ enum class Leaning : std::uint32_t {
 /// @param edges  bit i: the feature lies on edge i.
 Leaning leaning_of(const Solid& triangle, std::uint32_t edges, const Vec<3>& normal);
 
+/// The corner of a triangle to which an edge leads, which is also the edge after it.
+constexpr std::uint32_t next_corner(std::uint32_t edge) {
+  return edge == 2 ? 0 : edge + 1;
+}
+
 /// The two edges that meet in a corner, as bits.
 constexpr std::uint32_t edges_at(std::uint32_t corner) {
   return (1u << corner) | (1u << (corner == 0 ? 2u : corner - 1u));

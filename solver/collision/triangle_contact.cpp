@@ -6,13 +6,7 @@
 
 namespace cycloid::solver {
 
-static constexpr std::uint32_t kEdges = 0x10000000u;    ///< A feature of two edges.
-static constexpr std::uint32_t kNearest = 0x60000000u;  ///< The feature of nearest points.
-static constexpr std::uint32_t kCorner = 0x3ffu;        ///< In place of a clip edge.
-
-static std::uint32_t next_corner(std::uint32_t edge) {
-  return edge == 2 ? 0 : edge + 1;
-}
+static constexpr std::uint32_t kEdges = 0x10000000u;  ///< A feature of two edges.
 
 /// Points against a face that looks along `normal`, and the lowest height of any, m.
 struct SolidHeights {
@@ -40,7 +34,7 @@ struct SolidHeights {
 };
 
 /// The face that looks most against `normal`; of equal ones the first.
-static std::uint32_t opposed_face(const Solid& solid, const Vec<3>& normal) {
+static std::uint32_t most_opposed_face(const Solid& solid, const Vec<3>& normal) {
   std::uint32_t best = 0;
   float least = dot(solid.normals[0], normal);
   for (std::uint32_t f = 1; f < solid.face_count; ++f) {
@@ -155,7 +149,7 @@ static TriangleContact touch_faces(const Solid& triangle, const Solid& solid,
   const Solid& reference = own ? triangle : solid;
   const Solid& other = own ? solid : triangle;
   const std::uint32_t face = own ? 0 : best.face;
-  const std::uint32_t incident = own ? opposed_face(solid, best.normal) : 0;
+  const std::uint32_t incident = own ? most_opposed_face(solid, best.normal) : 0;
   const Vec<3> on_face = reference.vertices[reference.edges[reference.faces[face].edge].origin];
   Polygon polygon;
   face_polygon(other, incident, polygon);

@@ -22,16 +22,12 @@ static NearestEdge nearest_edge(const Solid& triangle, const Rod& rod) {
 /// The edges that the nearest point lies on.
 static std::uint32_t edges_of(const NearestEdge& nearest) {
   if (nearest.pair.fraction_a == 0.0f) return edges_at(nearest.edge);
-  if (nearest.pair.fraction_a == 1.0f) return edges_at(nearest.edge == 2 ? 0 : nearest.edge + 1);
+  if (nearest.pair.fraction_a == 1.0f) return edges_at(next_corner(nearest.edge));
   return 1u << nearest.edge;
 }
 
 static float height_at(const Solid& triangle, const Rod& rod, float fraction) {
   return dot(triangle.normals[0], point_on(rod, fraction) - triangle.vertices[0]);
-}
-
-static std::uint32_t next_corner(std::uint32_t edge) {
-  return edge == 2 ? 0 : edge + 1;
 }
 
 /// How high the rod's axis is over the triangle's plane, m: at its ends, and within the part that

@@ -81,7 +81,7 @@ static bool survey_edges(const Solid& triangle, const Solid& solid, const Judgem
   Vec<3> sides[3];
   std::array<float, kHullFacesMax> turns[3];
   for (std::uint32_t i = 0; i < 3; ++i) {
-    sides[i] = triangle.vertices[i == 2 ? 0 : i + 1] - triangle.vertices[i];
+    sides[i] = triangle.vertices[next_corner(i)] - triangle.vertices[i];
     for (std::uint32_t f = 0; f < solid.face_count; ++f)
       turns[i][f] = dot(solid.normals[f], sides[i]);
   }

@@ -11,7 +11,7 @@ static constexpr int kHitsMax = 8;
 /// Steps of a march. It is Newton's method on a convex function from the outside: quadratic, or
 /// one fourth of the gap per step where the path only grazes.
 static constexpr int kMarchMax = 16;
-static constexpr float kTouch = 1.0e-6f;  ///< m of gap at which the march has arrived.
+static constexpr float kArrived = 1.0e-6f;  ///< m of gap at which the march has arrived.
 /// Share of a path that may lead into a surface which it runs along: rounding.
 static constexpr float kGrazing = 1.0e-6f;
 static constexpr float kSkin = 0.01f;  ///< m added to boxes: covers rounding to 10 km away.
@@ -130,7 +130,7 @@ static void march(std::uint32_t s, const Flight<D>& flight, Hit<D>& hit) {
   for (int i = 0; i < kMarchMax; ++i) {
     const float approach = -dot(now.normal, flight.rest);
     if (approach <= grazing) return;
-    if (now.distance <= kTouch) break;
+    if (now.distance <= kArrived) break;
     time += now.distance / approach;
     if (time >= hit.time) return;
     now = gap(flight, shape, flight.at + time * flight.rest);

@@ -6,6 +6,9 @@
 
 namespace cycloid::solver {
 
+/// Starts that rounding puts this far inside of a surface they only touch still enter it, m.
+inline constexpr float kTouch = 1.0e-5f;
+
 /// Where a moving core first touches one that stands still.
 template <int D>
 struct Entry {

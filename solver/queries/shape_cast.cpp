@@ -22,9 +22,6 @@ static void offer(const Core<D>& core, float fraction, const Vec<D>& normal, con
   best = {true, fraction, normal, point};
 }
 
-/// Starts that rounding puts this far inside of a surface they only touch still enter it, m.
-static constexpr float kTouch = 1.0e-5f;
-
 /// The discs around the differences of vertices.
 template <int D>
 static void enter_corners(const Core<D>& core, const Core<D>& probe, const Way<D>& way,

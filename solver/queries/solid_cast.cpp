@@ -2,9 +2,6 @@
 
 namespace cycloid::solver {
 
-/// Starts that rounding puts this far inside of a surface they only touch still enter it, m.
-static constexpr float kTouch = 1.0e-5f;
-
 /// A point that goes straight towards a line, or a point, that `radius` rounds.
 struct CastFlight {
   Vec<3> from;       ///< Relative to the start of the line.

@@ -89,13 +89,6 @@ static void set_round(const WorldState<D>& state, const Contact<D>& contact, int
   block.follows = true;
 }
 
-template <int D>
-static bool can_turn(const BodyMass<D>& mass) {
-  for (const float value : mass.inverse_inertia.m)
-    if (value != 0.0f) return true;
-  return false;
-}
-
 template <int D, int W>
 static void set_contact(const StepContext<D>& context, const WorldState<D>& state,
                         const StepScratch<D>& scratch, int index, int lane,

@@ -22,13 +22,6 @@ static Wide speed_of(const float (&row)[Dim<D>::kFreedoms], const Motion<D>& mot
   return speed;
 }
 
-template <int D>
-static bool can_turn(const BodyMass<D>& mass) {
-  for (const float value : mass.inverse_inertia.m)
-    if (value != 0.0f) return true;
-  return false;
-}
-
 template <int N, class L>
 static Vec<N> lane_of(const Vec<N, L>& lanes, int lane) {
   Vec<N> one;
