@@ -109,7 +109,7 @@ def run_matrix(chosen: list[rows.Row], matrix: rows.Matrix, place: build.Place,
                is_resumed: bool) -> int:
     """Runs the rows, but those kept of an earlier run, and prints the table; 1 if one failed."""
     place.builds.mkdir(parents=True, exist_ok=True)
-    state = resume.state_of(place.root)
+    state = resume.state_of(place.root, matrix.goldens)
     results: list[report.Result] = []
     folders: dict[str, pathlib.Path] = {}
     for number, row in enumerate(chosen, 1):

@@ -200,7 +200,7 @@ class MatrixTest(unittest.TestCase):
         who = ["-c", "user.name=t", "-c", "user.email=t@t.example"]
         subprocess.run(["git", *who, *words], cwd=self.root, check=True, capture_output=True)
 
-    def test_a_resumed_run_keeps_rows_that_were_equal_at_the_same_commit(self) -> None:
+    def test_a_resumed_run_keeps_rows_that_were_equal_of_the_same_sources(self) -> None:
         (self.root / ".gitignore").write_text("/build/\n/rows.toml\n", encoding="utf-8")
         self.git("init")
         self.git("add", "-A")
@@ -228,7 +228,19 @@ class MatrixTest(unittest.TestCase):
         self.git("commit", "-a", "-m", "second")
         del built[:]
         self.matrix(*rows, "--resume", built=built)
-        self.assertEqual(built, ["good", "other"])  # The commit is another one.
+        self.assertEqual(built, ["good", "other"])  # The goldens are others.
+        (self.root / "server.cpp").write_text("of no row", encoding="utf-8")
+        self.git("add", "-A")
+        self.git("commit", "-m", "third")
+        del built[:]
+        self.matrix(*rows, "--resume", built=built)
+        self.assertEqual(built, [])
+        (self.root / "solver").mkdir()
+        (self.root / "solver/step.cpp").write_text("of every row", encoding="utf-8")
+        self.git("add", "-A")
+        self.git("commit", "-m", "fourth")
+        self.matrix(*rows, "--resume", built=built)
+        self.assertEqual(built, ["good", "other"])
 
     def test_a_build_that_breaks_fails_with_the_end_of_its_log(self) -> None:
         self.matrix("--row", "good")

@@ -1,6 +1,7 @@
 """What an interrupted matrix has already shown, for `--resume`."""
 
 import dataclasses
+import hashlib
 import json
 import pathlib
 import subprocess
@@ -10,17 +11,25 @@ from report import Result
 from rows import Row
 
 
-def state_of(root: pathlib.Path) -> str:
-    """The commit of the repository; "" where a file differs from it, and results of now are of no
-    use later."""
+# What decides the bits of a row, beside its own declaration: what it is built from, and how it is
+# compared. The server, the tests and the documents can change while a long matrix goes on.
+DECISIVE = ("CMakeLists.txt", "cmake", "cli", "protocol", "scenes", "solver",
+            *(f"tests/determinism/matrix/{name}" for name in (
+                "build.py", "checks.py", "precompile.cmake")))
+
+
+def state_of(root: pathlib.Path, goldens: str) -> str:
+    """The git objects of all that decides the bits; "" where a file differs from its commit, and
+    results of now are of no use later."""
     said = []
-    for command in (["git", "rev-parse", "HEAD"], ["git", "status", "--porcelain"]):
-        done = subprocess.run(command, cwd=root, capture_output=True, text=True, check=False)
+    for command in (["git", "ls-tree", "HEAD", "--"], ["git", "status", "--porcelain", "--"]):
+        done = subprocess.run([*command, goldens, *DECISIVE], cwd=root, capture_output=True,
+                              text=True, check=False)
         if done.returncode != 0:
             return ""
         said.append(done.stdout.strip())
-    commit, changes = said
-    return "" if changes else commit
+    objects, changes = said
+    return "" if changes else hashlib.sha256(objects.encode()).hexdigest()
 
 
 def _file(row: Row, place: Place) -> pathlib.Path:
