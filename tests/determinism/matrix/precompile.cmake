@@ -29,6 +29,8 @@ function(precompile_for_the_matrix)
   list(TRANSFORM with_flags_of_their_own PREPEND ${CMAKE_SOURCE_DIR}/)
   set_source_files_properties(${with_flags_of_their_own} TARGET_DIRECTORY cycloid_solver
     PROPERTIES SKIP_PRECOMPILE_HEADERS ON)
+  # Clang takes no instantiation of a class behind those of its members in other files.
+  compile_alone(cycloid_solver solver/world.cpp)
   compile_alone(cycloid_protocol protocol/state/layout.cpp protocol/state/quantised_delta.cpp
     protocol/wire/server_codec.cpp)
   compile_alone(cycloid_scenes scenes/json_reader.cpp scenes/json_writer.cpp
