@@ -5,8 +5,7 @@
 #include <iostream>
 #include <memory>
 
-#include "bench/accuracy/chart_figure.hpp"
-#include "bench/figures/gnuplot.hpp"
+#include "bench/accuracy/chart_files.hpp"
 #include "bench/figures/machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/files.hpp"
@@ -136,54 +135,22 @@ class ProgressBar {
   Clock::time_point begin_ = Clock::now();
 };
 
-std::string file_in(const std::string& folder, const std::string& name) {
-  return (std::filesystem::path(folder) / name).string();
-}
-
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
   if (error) throw Failure(kExitIo, "--out: " + folder + ": cannot be made: " + error.message());
 }
 
-/// What a scene is called in names of files: a file's path or a scene's parameters are no name.
-std::string file_stem(const std::string& name) {
-  std::string stem;
-  for (const char c : name) {
-    const bool plain = (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9');
-    stem += plain || c == '-' || c == '_' ? c : '-';
-  }
-  return stem;
-}
-
-void draw(const std::string& script, const std::string& file) {
-  if (const std::string why = figures::run_gnuplot(script, file); !why.empty())
-    throw Failure(kExitIo, why);
-}
-
 /// @returns the names of the files written.
 std::vector<std::string> write_chart(const accuracy::ChartPlan& plan, const ChartOptions& options) {
-  const auto errors = chosen_errors(options);
   const accuracy::ChartOrigin origin{figures::machine_text(), __VERSION__, options.commit,
                                      figures::date_text()};
-  std::vector<std::string> files = {"chart.csv", "chart.html", "fronts.md"};
-  std::vector<std::string> hovers;
-  for (const accuracy::SceneChart& chart : plan.scenes)
-    for (const accuracy::ErrorKind* error : errors) {
-      files.push_back(file_stem(chart.name) + '-' + error->name + ".svg");
-      const std::string still = file_in(options.out, files.back());
-      const std::string hover = still + ".hover";
-      draw(chart_script(chart, *error, accuracy::FigureKind::kStill, still), still);
-      draw(chart_script(chart, *error, accuracy::FigureKind::kHover, hover), hover);
-      const std::vector<std::byte> bytes = read_file(hover);
-      hovers.emplace_back(reinterpret_cast<const char*>(bytes.data()), bytes.size());
-      std::error_code gone;
-      std::filesystem::remove(hover, gone);
-    }
-  write_file(file_in(options.out, files[0]), chart_csv(plan, origin));
-  write_file(file_in(options.out, files[1]), chart_page(plan, errors, hovers, origin));
-  write_file(file_in(options.out, files[2]), chart_markdown(plan, *errors.front(), origin));
-  return files;
+  const auto errors = chosen_errors(options);
+  try {
+    return write_chart_files(plan, errors, options.out, origin);
+  } catch (const std::runtime_error& error) {
+    throw Failure(kExitIo, error.what());
+  }
 }
 
 Json json_of(const accuracy::ChartPlan& plan, const accuracy::ErrorKind& error) {

@@ -13,9 +13,10 @@ namespace cycloid::accuracy {
 /// A setting of a scene on a chart.
 struct ChartPoint {
   Measured measured;
-  std::optional<trials::Verdict> verdict;  ///< Of the trial's judge, where the scene is a trial.
+  std::optional<trials::Outcome> outcome;  ///< Of the trial's judge, where the scene is a trial.
   bool failed = false;                     ///< `run_chart` says of which.
   std::vector<double> times;               ///< ns per tick of each round.
+  int contender = -1;                      ///< Of ChartPlan::contenders; -1: ours.
 };
 
 /// A scene and every setting that it was solved with.
@@ -28,10 +29,21 @@ struct SceneChart {
   std::vector<ChartPoint> points;
 };
 
+/// Another engine on the chart, with a setting of its own: `method` is its name.
+struct Contender {
+  Setting setting;
+  /// As `measure`, from poses and velocities alone; nothing where the engine cannot hold the scene.
+  std::function<std::optional<ChartPoint>(const SceneChart& chart, const MeasureOptions& options)>
+      measure;
+  /// As `time_ticks`, of one round, for a scene that `measure` took.
+  std::function<double(const SceneChart& chart, std::uint32_t round)> time_ticks;
+};
+
 /// What to chart.
 struct ChartPlan {
   std::vector<SceneChart> scenes;  ///< Without points.
   std::vector<Setting> settings;
+  std::vector<Contender> contenders;
   MeasureOptions measure;
   std::uint32_t repeats = 3;  ///< Rounds of timing; 0: nothing is timed.
 };
@@ -51,13 +63,18 @@ void run_chart(ChartPlan& plan, const std::function<void(const ChartProgress&)>&
 
 enum class CostAxis { kRows, kTime };
 
-/// Rows or ns of a tick.
+/// Rows or ns of a tick; 0 where nobody has counted them.
 double cost_of(const ChartPoint& point, CostAxis axis);
 
 /// Indices of the points that no other point beats in one and equals in the other, of cost and of
-/// error, by rising cost; of equals the first. Without those that failed or have no such error.
+/// error, by rising cost; of equals the first. Without those that failed, have no such error or
+/// no such cost.
 std::vector<std::size_t> pareto_front(const SceneChart& chart, const ErrorKind& error,
                                       CostAxis axis);
+
+/// What tables list the front of: rows, which repeat exactly; time where there are other engines,
+/// whose rows nobody counts.
+CostAxis table_axis(const SceneChart& chart);
 
 /// Rows of a tick against the depth to which it lets a heavy body sink into a light one, m.
 using Line = std::vector<std::pair<double, double>>;

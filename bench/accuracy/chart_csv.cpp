@@ -63,7 +63,7 @@ static void add_setting(const SceneChart& chart, const ChartPoint& point, CsvRow
   row.add("sweeps", whole(setting.sweeps));
   row.add("relax_sweeps", whole(setting.relax_sweeps));
   row.add("ended", point.measured.ended ? "1" : "0");
-  row.add("verdict", point.verdict ? trials::verdict_name(*point.verdict) : "");
+  row.add("verdict", point.outcome ? trials::verdict_name(point.outcome->verdict) : "");
   row.add("failed", point.failed ? "1" : "0");
 }
 
@@ -105,9 +105,9 @@ static CsvRow row_of(const SceneChart& chart, std::size_t index, const Fronts& f
   CsvRow row;
   add_setting(chart, point, row);
   add_metrics(point.measured.metrics, row);
-  row.add("rows_per_tick", number(price.rows_per_tick));
-  row.add("state_bytes", whole(price.state_bytes));
-  row.add("digest", hexadecimal(point.measured.digest));
+  row.add("rows_per_tick", price.rows_per_tick > 0.0 ? number(price.rows_per_tick) : "");
+  row.add("state_bytes", price.state_bytes > 0 ? whole(price.state_bytes) : "");
+  row.add("digest", point.measured.digest != 0 ? hexadecimal(point.measured.digest) : "");
   row.add("on_rows_front", holds(fronts.rows, index) ? "1" : "0");
   row.add("ns_per_tick", point.times.empty() ? "" : number(price.ns_per_tick));
   row.add("on_time_front", !point.times.empty() && holds(fronts.time, index) ? "1" : "0");
@@ -135,8 +135,11 @@ std::string chart_csv(const ChartPlan& plan, const ChartOrigin& origin) {
 
 static std::string front_line(const SceneChart& chart, std::size_t index, const ErrorKind& error) {
   const ChartPoint& point = chart.points[index];
-  std::string line = "| " + chart.name + " | " + name_of(point.measured.setting) + " | " +
-                     short_number(point.measured.price.rows_per_tick) + " | ";
+  std::string line =
+      "| " + chart.name + " | " + name_of(point.measured.setting) + " | " +
+      (point.measured.price.rows_per_tick > 0.0 ? short_number(point.measured.price.rows_per_tick)
+                                                : "") +
+      " | ";
   if (!point.times.empty()) line += short_number(1e-3 * point.measured.price.ns_per_tick);
   return line + " | " + short_number(error.of(point.measured).value_or(0.0)) + " |\n";
 }
@@ -147,7 +150,7 @@ std::string chart_markdown(const ChartPlan& plan, const ErrorKind& error,
                      origin.commit + ", " + origin.date + ".\n\n| scene | setting | rows | us | " +
                      error.label + " |\n|---|---|---:|---:|---:|\n";
   for (const SceneChart& chart : plan.scenes)
-    for (const std::size_t index : pareto_front(chart, error, CostAxis::kRows))
+    for (const std::size_t index : pareto_front(chart, error, table_axis(chart)))
       text += front_line(chart, index, error);
   return text;
 }

@@ -19,8 +19,8 @@ struct ChartOrigin {
 /// same every time.
 std::string chart_csv(const ChartPlan& plan, const ChartOrigin& origin);
 
-/// Markdown: for each scene the settings on the front of error against rows, the cheapest first,
-/// what they cost and how wrong they are.
+/// Markdown: for each scene the settings on the front of error against cost (`table_axis`), the
+/// cheapest first, what they cost and how wrong they are.
 std::string chart_markdown(const ChartPlan& plan, const ErrorKind& error,
                            const ChartOrigin& origin);
 

@@ -43,15 +43,18 @@ static std::string cell(const std::string& text) {
 static std::string front_table(const SceneChart& chart, const ErrorKind& error) {
   std::string text = "<table><tr><th>on the front<th>rows a tick<th>us a tick<th>";
   text += escaped(error.label) + "<th>digest</tr>\n";
-  for (const std::size_t index : pareto_front(chart, error, CostAxis::kRows)) {
+  for (const std::size_t index : pareto_front(chart, error, table_axis(chart))) {
     const ChartPoint& point = chart.points[index];
     char digest[32];
     std::snprintf(digest, sizeof digest, "%016llx",
                   static_cast<unsigned long long>(point.measured.digest));
     text += "<tr>" + cell(name_of(point.measured.setting)) +
-            cell(short_number(point.measured.price.rows_per_tick)) +
+            cell(point.measured.price.rows_per_tick > 0.0
+                     ? short_number(point.measured.price.rows_per_tick)
+                     : "") +
             cell(point.times.empty() ? "" : short_number(1e-3 * point.measured.price.ns_per_tick)) +
-            cell(short_number(error.of(point.measured).value_or(0.0))) + cell(digest) + "</tr>\n";
+            cell(short_number(error.of(point.measured).value_or(0.0))) +
+            cell(point.measured.digest != 0 ? digest : "") + "</tr>\n";
   }
   return text + "</table>\n";
 }

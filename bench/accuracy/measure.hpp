@@ -22,6 +22,7 @@ struct MeasureOptions {
   std::uint32_t direct_rows_max =
       80;                    ///< Of the problem that the direct reference solves; 0: none.
   bool consistency = false;  ///< Runs 16 times the ticks of a second once more.
+  bool impulses = true;      ///< False: nobody knows them, as of other engines.
   bool sleep = false;        ///< False: no body sleeps, so that rest shows its cost and its jitter.
 };
 

@@ -81,7 +81,8 @@ Observer<D>::Observer(const WorldState<D>& start, std::uint32_t ticks, bool seat
   const auto second =
       static_cast<std::uint32_t>(std::lround(1.0 / static_cast<double>(start.header.tick_s)));
   steady_from_ = ticks - std::min(second, ticks / 2);
-  has_impulses_ = start.header.tuning.stabilisation != solver::Stabilisation::kXpbd;
+  has_impulses_ =
+      options.impulses && start.header.tuning.stabilisation != solver::Stabilisation::kXpbd;
   is_free_ = is_free(start, seats);
   falls_alike_ = falls_alike(start);
   is_driven_ = is_driven(start, seats);

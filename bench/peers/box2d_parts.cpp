@@ -119,6 +119,29 @@ void add_box2d_fixtures(const solver::WorldState<2>& state, const solver::Body<2
   into.SetMassData(&mass);
 }
 
+static bool takes_polygon(const solver::Shape<2>& shape) {
+  if (shape.vertex_count > b2_maxPolygonVertices) return false;
+  std::uint32_t apart = 0;
+  for (std::uint32_t i = 0; i < shape.vertex_count; ++i) {
+    bool is_new = true;
+    for (std::uint32_t j = 0; j < i; ++j)
+      if (length(shape.vertices[i] - shape.vertices[j]) <= 0.5f * b2_linearSlop) is_new = false;
+    if (is_new) ++apart;
+  }
+  return apart >= 3;
+}
+
+bool takes_box2d_polygons(const solver::WorldState<2>& state) {
+  for (const solver::Shape<2>& shape : state.shapes)
+    if (shape.kind == ShapeKind::kPolygon && !takes_polygon(shape)) return false;
+  return true;
+}
+
+void take_box2d_skin_off(b2Body& body) {
+  for (b2Fixture* fixture = body.GetFixtureList(); fixture != nullptr; fixture = fixture->GetNext())
+    if (fixture->GetType() != b2Shape::e_circle) fixture->GetShape()->m_radius -= b2_polygonRadius;
+}
+
 static b2Joint* add_pin(const solver::Joint<2>& joint, b2RevoluteJointDef def, b2World& world) {
   def.referenceAngle = angle_of(joint.reference);
   def.enableLimit = joint.limit_enabled != 0;

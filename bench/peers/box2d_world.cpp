@@ -1,5 +1,6 @@
 #include "bench/peers/box2d_world.hpp"
 
+#include <algorithm>
 #include <deque>
 
 #include "bench/peers/box2d_parts.hpp"
@@ -8,8 +9,12 @@
 namespace cycloid::peers {
 namespace {
 
-constexpr int kVelocityIterations = 8;
-constexpr int kPositionIterations = 3;
+constexpr int kVelocityIterations = 8;  ///< And three of positions, as the engine's manual says.
+
+/// Of positions, rounded up.
+constexpr int position_iterations(int of_velocities) {
+  return (3 * of_velocities + kVelocityIterations - 1) / kVelocityIterations;
+}
 
 class Box2dWorld final : public DrivenEngine<2> {
  public:
@@ -22,6 +27,10 @@ class Box2dWorld final : public DrivenEngine<2> {
     const b2Rot turn(at.GetAngle());
     return {{{at.GetWorldCenter().x, at.GetWorldCenter().y}}, {{turn.c, turn.s}}};
   }
+  Twist<2> twist(std::uint32_t body) const override {
+    const b2Body& at = *bodies_[body];
+    return {{{at.GetLinearVelocity().x, at.GetLinearVelocity().y}}, {{at.GetAngularVelocity()}}};
+  }
   std::uint32_t contacts() const override {
     std::uint32_t count = 0;
     for (const b2Contact* c = world_.GetContactList(); c != nullptr; c = c->GetNext())
@@ -30,7 +39,12 @@ class Box2dWorld final : public DrivenEngine<2> {
   }
 
  protected:
-  void advance() override { world_.Step(tick_s_, kVelocityIterations, kPositionIterations); }
+  void advance() override {
+    const float step_s = tick_s_ / static_cast<float>(substeps_);
+    for (int i = 0; i < substeps_; ++i)
+      world_.Step(step_s, iterations_, position_iterations(iterations_));
+    world_.ClearForces();
+  }
   void push(std::uint32_t body, const solver::Vec<2>& force_n) override {
     bodies_[body]->ApplyForceToCenter(to_box2d(force_n), true);
   }
@@ -56,6 +70,8 @@ class Box2dWorld final : public DrivenEngine<2> {
  private:
   b2World world_;
   float tick_s_;
+  int substeps_;
+  int iterations_;
   std::vector<b2Body*> bodies_;
   std::vector<b2Joint*> joints_;
   std::vector<b2Body*> spawned_;
@@ -65,12 +81,16 @@ class Box2dWorld final : public DrivenEngine<2> {
 Box2dWorld::Box2dWorld(const EngineInput<2>& input)
     : DrivenEngine(input.built),
       world_(to_box2d(input.built.world.state().header.gravity)),
-      tick_s_(input.built.world.tick_s()) {
+      tick_s_(input.built.world.tick_s()),
+      substeps_(std::max(1, input.settings.substeps)),
+      iterations_(input.settings.iterations > 0 ? input.settings.iterations : kVelocityIterations) {
   const solver::WorldState<2>& state = input.built.world.state();
   world_.SetAllowSleeping(input.settings.sleep);
+  world_.SetAutoClearForces(false);  // Of all substeps of a tick.
   for (const solver::Body<2>& body : state.bodies) {
     bodies_.push_back(add_box2d_body(body, world_));
     add_box2d_fixtures(state, body, *bodies_.back());
+    if (input.settings.exact_shapes) take_box2d_skin_off(*bodies_.back());
   }
   for (const solver::Joint<2>& joint : state.joints) {
     joints_.push_back(add_box2d_joint(joint, bodies_[joint.body_a], bodies_[joint.body_b], world_));
@@ -91,6 +111,10 @@ std::size_t Box2dWorld::spawn(const solver::WorldState<2>& made) {
 std::unique_ptr<Engine<2>> make_box2d_world(const EngineInput<2>& input, std::string& why) {
   if (!input.scene.cloths.empty() || !input.scene.characters.empty()) {
     why = "Box2D has no particles and no characters";
+    return nullptr;
+  }
+  if (!takes_box2d_polygons(input.built.world.state())) {
+    why = "a polygon is smaller than what Box2D takes for a point, or has too many corners";
     return nullptr;
   }
   auto world = std::make_unique<Box2dWorld>(input);

@@ -31,13 +31,21 @@ class BulletWorld final : public DrivenEngine<3> {
     return {{{at.getOrigin().x(), at.getOrigin().y(), at.getOrigin().z()}},
             {{q.x(), q.y(), q.z(), q.w()}}};
   }
+  Twist<3> twist(std::uint32_t body) const override {
+    const btVector3& velocity = bodies_[body]->getLinearVelocity();
+    const btVector3& spin = bodies_[body]->getAngularVelocity();
+    return {{{velocity.x(), velocity.y(), velocity.z()}}, {{spin.x(), spin.y(), spin.z()}}};
+  }
   std::uint32_t contacts() const override;
 
  protected:
-  void advance() override { world_.stepSimulation(tick_s_, 0, tick_s_); }
+  void advance() override {
+    const float step_s = tick_s_ / static_cast<float>(substeps_);
+    for (int i = 0; i < substeps_; ++i) world_.stepSimulation(step_s, 0, step_s);
+  }
   void push(std::uint32_t body, const solver::Vec<3>& force_n) override {
     bodies_[body]->activate(true);
-    bodies_[body]->applyCentralForce(to_bullet(force_n));
+    bodies_[body]->applyCentralForce(static_cast<float>(substeps_) * to_bullet(force_n));
   }
   void kick(std::uint32_t body, const solver::Vec<3>& impulse_n_s) override {
     bodies_[body]->activate(true);
@@ -45,7 +53,7 @@ class BulletWorld final : public DrivenEngine<3> {
   }
   void turn(std::uint32_t body, const solver::Spin<3>& torque_n_m) override {
     bodies_[body]->activate(true);
-    bodies_[body]->applyTorque(to_bullet(torque_n_m));
+    bodies_[body]->applyTorque(static_cast<float>(substeps_) * to_bullet(torque_n_m));
   }
   void set_motor_speed(std::uint32_t joint, float speed) override {
     if (auto* wheel = dynamic_cast<btHinge2Constraint*>(joints_[joint].get()))
@@ -82,6 +90,7 @@ class BulletWorld final : public DrivenEngine<3> {
   std::vector<std::unique_ptr<btTypedConstraint>> joints_;
   std::vector<std::unique_ptr<btRigidBody>> spawned_;
   float tick_s_;
+  int substeps_;  ///< What acts in a tick acts in the first: the engine forgets it there.
   bool sleep_;
   int missing_joint_ = -1;
 };
@@ -130,8 +139,13 @@ void BulletWorld::add_joints(const solver::WorldState<3>& state) {
 }
 
 BulletWorld::BulletWorld(const EngineInput<3>& input)
-    : DrivenEngine(input.built), tick_s_(input.built.world.tick_s()), sleep_(input.settings.sleep) {
+    : DrivenEngine(input.built),
+      tick_s_(input.built.world.tick_s()),
+      substeps_(std::max(1, input.settings.substeps)),
+      sleep_(input.settings.sleep) {
   const solver::WorldState<3>& state = input.built.world.state();
+  if (input.settings.iterations > 0)
+    world_.getSolverInfo().m_numIterations = input.settings.iterations;
   world_.setGravity(to_bullet(state.header.gravity));
   world_.getPairCache()->setOverlapFilterCallback(&filter_);
   add_bodies(state);

@@ -7,16 +7,16 @@ namespace cycloid::peers {
 
 template <>
 std::span<const EngineKind<2>> engines<2>() {
-  static constexpr EngineKind<2> kEngines[] = {{"ours", make_our_world<2>},
-                                               {"Box2D 2.4.1", make_box2d_world}};
+  static constexpr EngineKind<2> kEngines[] = {{"ours", 0, make_our_world<2>},
+                                               {"Box2D 2.4.1", 8, make_box2d_world}};
   return kEngines;
 }
 
 template <>
 std::span<const EngineKind<3>> engines<3>() {
-  static constexpr EngineKind<3> kEngines[] = {{"ours", make_our_world<3>},
-                                               {"Bullet 3.24", make_bullet_world},
-                                               {"ODE 0.16", make_ode_world}};
+  static constexpr EngineKind<3> kEngines[] = {{"ours", 0, make_our_world<3>},
+                                               {"Bullet 3.24", 10, make_bullet_world},
+                                               {"ODE 0.16", 20, make_ode_world}};
   return kEngines;
 }
 

@@ -25,24 +25,29 @@ class OdeWorld final : public DrivenEngine<3> {
     return {{{real(at[0]), real(at[1]), real(at[2])}},
             {{real(q[1]), real(q[2]), real(q[3]), real(q[0])}}};
   }
+  Twist<3> twist(std::uint32_t body) const override {
+    if (bodies_[body] == nullptr) return {solver::Vec<3>::zero(), solver::Spin<3>::zero()};
+    const auto vector = [](const dReal* of) {
+      return solver::Vec<3>{
+          {static_cast<float>(of[0]), static_cast<float>(of[1]), static_cast<float>(of[2])}};
+    };
+    return {vector(dBodyGetLinearVel(bodies_[body])), vector(dBodyGetAngularVel(bodies_[body]))};
+  }
   std::uint32_t contacts() const override { return pairs_; }
 
  protected:
   void advance() override {
-    pairs_ = 0;
-    dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) {
-      static_cast<OdeWorld*>(self)->meet(a, b);
-    });
-    dWorldQuickStep(world_, tick_s_);
-    dJointGroupEmpty(contacts_);
+    for (int i = 0; i < substeps_; ++i) step_once();
   }
-  void push(std::uint32_t body, const solver::Vec<3>& f) override {
+  void push(std::uint32_t body, const solver::Vec<3>& force_n) override {
+    const solver::Vec<3> f = static_cast<float>(substeps_) * force_n;
     dBodyAddForce(bodies_[body], f[0], f[1], f[2]);
   }
   void kick(std::uint32_t body, const solver::Vec<3>& impulse_n_s) override {
     push(body, (1.0f / tick_s_) * impulse_n_s);
   }
-  void turn(std::uint32_t body, const solver::Spin<3>& t) override {
+  void turn(std::uint32_t body, const solver::Spin<3>& torque_n_m) override {
+    const solver::Spin<3> t = static_cast<float>(substeps_) * torque_n_m;
     dBodyAddTorque(bodies_[body], t[0], t[1], t[2]);
   }
   void set_motor_speed(std::uint32_t joint, float speed) override {
@@ -58,6 +63,15 @@ class OdeWorld final : public DrivenEngine<3> {
     dBodyID body;
     std::vector<dGeomID> geoms;
   };
+  float step_s() const { return tick_s_ / static_cast<float>(substeps_); }
+  void step_once() {
+    pairs_ = 0;
+    dSpaceCollide(space_, this, [](void* self, dGeomID a, dGeomID b) {
+      static_cast<OdeWorld*>(self)->meet(a, b);
+    });
+    dWorldQuickStep(world_, step_s());
+    dJointGroupEmpty(contacts_);
+  }
   void meet(dGeomID a, dGeomID b);
   void add_bodies(const solver::WorldState<3>& state);
   void add_joints(const solver::WorldState<3>& state);
@@ -72,13 +86,18 @@ class OdeWorld final : public DrivenEngine<3> {
   std::vector<std::pair<dBodyID, dBodyID>> apart_;  ///< Sorted; bodies that a joint keeps apart.
   std::vector<Spawned> spawned_;
   float tick_s_;
+  int substeps_;  ///< What acts in a tick acts in the first: the engine forgets it there.
   std::uint32_t pairs_ = 0;
   std::string missing_;
 };
 
 OdeWorld::OdeWorld(const EngineInput<3>& input)
-    : DrivenEngine(input.built), tick_s_(input.built.world.tick_s()) {
+    : DrivenEngine(input.built),
+      tick_s_(input.built.world.tick_s()),
+      substeps_(std::max(1, input.settings.substeps)) {
   const solver::WorldState<3>& state = input.built.world.state();
+  if (input.settings.iterations > 0)
+    dWorldSetQuickStepNumIterations(world_, input.settings.iterations);
   const solver::Vec<3>& gravity = state.header.gravity;
   dWorldSetGravity(world_, gravity[0], gravity[1], gravity[2]);
   dWorldSetAutoDisableFlag(world_, input.settings.sleep ? 1 : 0);
@@ -91,7 +110,7 @@ void OdeWorld::add_bodies(const solver::WorldState<3>& state) {
   std::vector<dGeomID> geoms;
   for (const solver::Body<3>& body : state.bodies) {
     starts_.push_back({body.position, body.rotation});
-    bodies_.push_back(add_ode_body(body, tick_s_, world_));
+    bodies_.push_back(add_ode_body(body, step_s(), world_));
     if (!add_ode_geoms(state, body, bodies_.back(), place, geoms))
       missing_ = "a shape is of a kind that is not mapped";
   }
@@ -143,7 +162,7 @@ void OdeWorld::meet(dGeomID geom_a, dGeomID geom_b) {
 std::size_t OdeWorld::spawn(const solver::WorldState<3>& made) {
   const solver::Body<3>& body = made.bodies[0];
   Spawned& spawned = spawned_.emplace_back();
-  spawned.body = add_ode_body(body, tick_s_, world_);
+  spawned.body = add_ode_body(body, step_s(), world_);
   add_ode_geoms(made, body, spawned.body, {world_, space_, shapes_}, spawned.geoms);
   return spawned_.size() - 1;
 }

@@ -26,6 +26,11 @@ class OurWorld final : public Engine<D> {
     return {record.position, record.rotation};
   }
 
+  Twist<D> twist(std::uint32_t body) const override {
+    const solver::Body<D>& record = built_->world.state().bodies[body];
+    return {record.velocity, record.spin};
+  }
+
   std::uint32_t contacts() const override {
     std::uint32_t count = 0;
     for (const solver::Contact<D>& contact : built_->world.state().contacts)

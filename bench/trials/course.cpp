@@ -23,24 +23,33 @@ static double angle_of(const solver::Rotation<3>&) {
 }
 
 template <int D>
-static BodyAt body_at(const solver::BodyView<D>& view) {
+static BodyAt body_at(const solver::Body<D>& from) {
+  const solver::Vec<D> position = from.position - solver::rotate(from.rotation, from.local_center);
   BodyAt body;
   for (std::size_t i = 0; i < D; ++i) {
-    body.position[i] = static_cast<double>(view.position[static_cast<int>(i)]);
-    body.velocity[i] = static_cast<double>(view.velocity[static_cast<int>(i)]);
+    body.position[i] = static_cast<double>(position[static_cast<int>(i)]);
+    body.velocity[i] = static_cast<double>(from.velocity[static_cast<int>(i)]);
   }
   for (int i = 0; i < solver::Dim<D>::kSpin; ++i)
-    body.spin[static_cast<std::size_t>(i)] = static_cast<double>(view.spin[i]);
-  body.angle = angle_of(view.rotation);
-  body.mass = static_cast<double>(view.mass);
+    body.spin[static_cast<std::size_t>(i)] = static_cast<double>(from.spin[i]);
+  body.angle = angle_of(from.rotation);
+  body.mass = static_cast<double>(from.mass);
   return body;
 }
 
 template <int D>
-static std::vector<BodyAt> bodies_of(const solver::World<D>& world) {
+static std::vector<BodyAt> bodies_of(const solver::WorldState<D>& state) {
   std::vector<BodyAt> bodies;
-  for (const solver::BodyView<D>& view : world.bodies()) bodies.push_back(body_at(view));
+  for (const solver::Body<D>& body : state.bodies)
+    if (body.kind != solver::BodyKind::kFree) bodies.push_back(body_at(body));
   return bodies;
+}
+
+template <int D>
+static const solver::Body<D>& last_body(const solver::WorldState<D>& state) {
+  std::size_t last = state.bodies.size() - 1;
+  while (last > 0 && state.bodies[last].kind == solver::BodyKind::kFree) --last;
+  return state.bodies[last];
 }
 
 double distance(const std::array<double, 3>& a, const std::array<double, 3>& b) {
@@ -70,13 +79,11 @@ static void take_motions(const Motions& motions, bool late, Course& course) {
   course.highest_late_m = std::max(course.highest_late_m, motions.highest_m);
 }
 
-static void take_turn(const solver::BodyView<2>& first, const solver::BodyView<2>& last,
-                      Course& course) {
+static void take_turn(const solver::Body<2>& first, const solver::Body<2>& last, Course& course) {
   course.turn_max_rad = std::max(course.turn_max_rad, std::abs(angle_of(last.rotation)));
   course.turned_over = course.turned_over || first.spin[0] * last.spin[0] < 0.0f;
 }
-static void take_turn(const solver::BodyView<3>& first, const solver::BodyView<3>& last,
-                      Course& course) {
+static void take_turn(const solver::Body<3>& first, const solver::Body<3>& last, Course& course) {
   const solver::Vec<3> before = solver::rotate_back(first.rotation, first.spin);
   const solver::Vec<3> now = solver::rotate_back(last.rotation, last.spin);
   int axis = 0;
@@ -86,31 +93,48 @@ static void take_turn(const solver::BodyView<3>& first, const solver::BodyView<3
 }
 
 template <int D>
+CourseWatch<D>::CourseWatch(const solver::WorldState<D>& start, std::uint32_t ticks)
+    : ticks_(ticks), first_(last_body(start)), before_(motions_of(start)), now_(before_) {
+  course_.start = bodies_of(start);
+  course_.energy_start_j = course_.energy_end_j = before_.energy_j;
+}
+
+template <int D>
+bool CourseWatch<D>::look(const solver::WorldState<D>& state, std::uint32_t tick) {
+  now_ = motions_of(state);
+  take_motions(now_, 2 * tick > ticks_, course_);
+  take_turn(first_, last_body(state), course_);
+  if (now_.finite && tick % kTicksPerMeasure == 0)
+    take_accuracy(state, tick + kTicksOfEnd > ticks_, course_);
+  return now_.finite;
+}
+
+template <int D>
+Course CourseWatch<D>::finish(const solver::WorldState<D>& end, bool ended) {
+  course_.ended = ended;
+  course_.end = bodies_of(end);
+  const double size = distance(before_.momentum, {});
+  if (size > 0.0) course_.momentum_error = distance(now_.momentum, before_.momentum) / size;
+  return course_;
+}
+
+template class CourseWatch<2>;
+template class CourseWatch<3>;
+
+template <int D>
 static Course run(const scenes::Scene& scene, std::uint32_t ticks, Act<D> act) {
   std::vector<scenes::Mistake> mistakes;
   const auto built = scenes::build<D>(scene, mistakes);
   if (built == nullptr) throw std::logic_error(scene.name + ": " + mistakes.front().reason);
   solver::World<D>& world = built->world;
-  Course course;
-  course.start = bodies_of(world);
-  const solver::BodyView<D> first = world.bodies().back();
-  const Motions before = motions_of(world.state());
-  course.energy_start_j = course.energy_end_j = before.energy_j;
-  Motions now = before;
-  for (std::uint32_t tick = 1; tick <= ticks && course.ended; ++tick) {
+  CourseWatch<D> watch(world.state(), ticks);
+  bool ended = true;
+  for (std::uint32_t tick = 1; tick <= ticks && ended; ++tick) {
     if (act != nullptr) act(world, tick);
-    course.ended = world.step().ok();
-    now = motions_of(world.state());
-    course.ended = course.ended && now.finite;
-    take_motions(now, 2 * tick > ticks, course);
-    take_turn(first, world.bodies().back(), course);
-    if (tick % kTicksPerMeasure == 0)
-      take_accuracy(world.state(), tick + kTicksOfEnd > ticks, course);
+    ended = world.step().ok();
+    ended = watch.look(world.state(), tick) && ended;
   }
-  course.end = bodies_of(world);
-  const double size = distance(before.momentum, {});
-  if (size > 0.0) course.momentum_error = distance(now.momentum, before.momentum) / size;
-  return course;
+  return watch.finish(world.state(), ended);
 }
 
 Course run_trial(const scenes::Trial& trial, const solver::Tuning& method, Act<2> act) {

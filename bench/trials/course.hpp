@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <vector>
 
+#include "bench/trials/motions.hpp"
 #include "scenes/trials.hpp"
 #include "solver/definitions.hpp"
 
@@ -41,6 +42,25 @@ struct Course {
   double speed_max_m_s = 0.0;     ///< Of any body in the whole run.
   double speed_late_m_s = 0.0;    ///< In the second half.
   double highest_late_m = -1e30;  ///< y of any body that moves, in the second half.
+};
+
+/// Watches one run of a trial, tick after tick, of whatever engine makes its states.
+template <int D>
+class CourseWatch {
+ public:
+  /// @param start  the state at tick 0; a body moves or not.
+  CourseWatch(const solver::WorldState<D>& start, std::uint32_t ticks);
+  /// After every tick. @returns false where a number is not finite; nothing more is watched then.
+  bool look(const solver::WorldState<D>& state, std::uint32_t tick);
+  /// What was seen. @param ended  whether every tick came to pass.
+  Course finish(const solver::WorldState<D>& end, bool ended);
+
+ private:
+  std::uint32_t ticks_;
+  solver::Body<D> first_;  ///< The last body, as it was at the start.
+  Motions before_;
+  Motions now_;
+  Course course_;
 };
 
 /// Something that happens in a trial besides what its scene says; may be null.

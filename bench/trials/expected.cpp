@@ -41,8 +41,7 @@ std::string expected_text(const ExpectedTable& table) {
   return text;
 }
 
-/// "sags 0.123" as a cell: the number, and how it looks.
-static std::string cell(const std::string& outcome) {
+std::string outcome_cell(const std::string& outcome) {
   const std::size_t space = outcome.find(' ');
   const std::string verdict = outcome.substr(0, space);
   const std::string number = space == std::string::npos ? "-" : outcome.substr(space + 1);
@@ -62,7 +61,7 @@ std::string expected_markdown(const ExpectedTable& table) {
     std::string cells;
     for (const Method& method : methods()) {
       const auto found = table.find({trial.name, method.name});
-      if (found != table.end()) cells += " " + cell(found->second) + " |";
+      if (found != table.end()) cells += " " + outcome_cell(found->second) + " |";
     }
     if (cells.empty()) continue;
     const std::string name = std::string(trial.name).substr(sizeof "trial-" - 1);

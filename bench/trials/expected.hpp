@@ -19,6 +19,9 @@ bool read_expected(std::string_view text, ExpectedTable& table, std::string& mis
 /// are left out.
 std::string expected_text(const ExpectedTable& table);
 
+/// The text of an outcome as a cell: "**0.0123**" stands, "0.123" sags, "x 1.2" fails.
+std::string outcome_cell(const std::string& outcome);
+
 /// Rows of trials, columns of methods, for docs/stability.md.
 std::string expected_markdown(const ExpectedTable& table);
 

@@ -227,7 +227,10 @@ const Judge& judge_of(const scenes::Trial& trial) {
 
 Outcome judge(const scenes::Trial& trial, const solver::Tuning& method) {
   const Judge& by = judge_of(trial);
-  const Course course = run_trial(trial, method, by.act);
+  return judged(by, run_trial(trial, method, by.act));
+}
+
+Outcome judged(const Judge& by, const Course& course) {
   Outcome outcome;
   outcome.ended = course.ended && course.end.size() > 0;
   if (!outcome.ended) return outcome;

@@ -28,6 +28,8 @@ struct Outcome {
   bool ended = true;   ///< False: the world faulted, which is a failure.
 };
 Outcome judge(const scenes::Trial& trial, const solver::Tuning& method);
+/// What the judge makes of a course that some engine has run.
+Outcome judged(const Judge& by, const Course& course);
 
 const char* verdict_name(Verdict verdict);  ///< "stands", "sags", "fails"
 /// As the expected table says it: "sags 0.123", three digits; "fails" alone after a fault.

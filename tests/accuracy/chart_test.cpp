@@ -72,7 +72,7 @@ TEST(Chart, AsksTheJudgeOfATrial) {
   ASSERT_EQ(points.size(), 4u);
   EXPECT_TRUE(points[2].failed);
   EXPECT_FALSE(points[3].failed);
-  EXPECT_EQ(points[3].verdict, trials::Verdict::kStands);
+  EXPECT_EQ(points[3].outcome->verdict, trials::Verdict::kStands);
 }
 
 TEST(Chart, CallsWhatHasMovedTooFarFallen) {
@@ -89,7 +89,7 @@ TEST(Chart, CallsWhatGainsEnergyFailed) {
   ChartPlan plan = plan_of("trial-ball-and-chain", {{"pgs", 4, 1, 0}, {"soft-step", 4, 1, 1}});
   run_chart(plan, [](const ChartProgress&) {});
   EXPECT_GT(plan.scenes[0].points[0].measured.metrics.energy_gained_j, 1e4);
-  EXPECT_NE(plan.scenes[0].points[0].verdict, trials::Verdict::kFails);
+  EXPECT_NE(plan.scenes[0].points[0].outcome->verdict, trials::Verdict::kFails);
   EXPECT_TRUE(plan.scenes[0].points[0].failed);
   EXPECT_FALSE(plan.scenes[0].points[1].failed);
 }

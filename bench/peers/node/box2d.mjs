@@ -1,8 +1,10 @@
-// Box2D v3 as the package box2d3-wasm, with its defaults: four substeps, one thread.
+// Box2D v3 as the package box2d3-wasm, with its defaults where nothing else is asked for: four
+// substeps, contacts of 30 Hz, one thread.
 import Box2DFactory from 'box2d3-wasm';
 import { filterOf, materialOf, stepSeconds, triple } from './scene.mjs';
 
-const kSubsteps = 4;
+const kDefaults = { substeps: 4 };
+const kHalfSpaceReach = 2000;  // m
 const kKinds = { static: 'b2_staticBody', kinematic: 'b2_kinematicBody', dynamic: 'b2_dynamicBody' };
 
 function hullOf(b2, points) {
@@ -34,6 +36,14 @@ function addShape(b2, body, shape, def) {
       segment.point2 = at(shape.points[(i + 1) % count]);
       b2.b2CreateSegmentShape(body, def, segment);
     }
+  } else if (kind === 'half_space') {
+    // A segment along its surface, as in bench/peers/box2d_parts.cpp.
+    const [x, y] = triple(shape.normal);
+    const offset = shape.offset ?? 0;
+    const segment = new b2.b2Segment();
+    segment.point1 = new b2.b2Vec2(x * offset - y * kHalfSpaceReach, y * offset + x * kHalfSpaceReach);
+    segment.point2 = new b2.b2Vec2(x * offset + y * kHalfSpaceReach, y * offset - x * kHalfSpaceReach);
+    b2.b2CreateSegmentShape(body, def, segment);
   } else {
     throw new Error(`no ${kind} in box2d3-wasm`);
   }
@@ -46,10 +56,19 @@ function shapeDef(b2, scene, shape) {
   def.density = shape.density ?? 1;
   def.material.friction = material.friction;
   def.material.restitution = material.restitution;
+  def.material.rollingResistance = material.rolling_resistance;
   def.filter.categoryBits = filter.category;
   def.filter.maskBits = filter.mask;
   def.filter.groupIndex = filter.group;
   return def;
+}
+
+/** The mass that a body says, spread as its shapes spread theirs. */
+function setMass(b2, body, mass) {
+  const data = b2.b2Body_GetMassData(body);
+  data.rotationalInertia *= mass / data.mass;
+  data.mass = mass;
+  b2.b2Body_SetMassData(body, data);
 }
 
 function addBody(b2, world, scene, body) {
@@ -60,8 +79,13 @@ function addBody(b2, world, scene, body) {
   def.rotation = b2.b2MakeRot(angle);
   def.linearVelocity = new b2.b2Vec2(...triple(body.velocity).slice(0, 2));
   def.angularVelocity = triple(body.spin)[0];
+  def.linearDamping = body.linear_damping ?? 0;
+  def.angularDamping = body.angular_damping ?? 0;
+  def.gravityScale = body.gravity_scale ?? 1;
+  if (body.fixed_rotation) throw new Error('no fixed rotation in this adapter for box2d3-wasm');
   const made = b2.b2CreateBody(world, def);
   for (const shape of body.shapes ?? []) addShape(b2, made, shape, shapeDef(b2, scene, shape));
+  if (body.mass !== undefined) setMass(b2, made, body.mass);
   return made;
 }
 
@@ -86,12 +110,15 @@ function addPin(b2, world, joint, a, b) {
 }
 
 class Box2dWorld {
-  constructor(b2, scene) {
+  constructor(b2, scene, settings) {
     this.b2 = b2;
+    this.substeps = settings.substeps;
     this.tick_s = stepSeconds(scene);
     const def = b2.b2DefaultWorldDef();
     def.gravity = new b2.b2Vec2(...triple(scene.gravity).slice(0, 2));
     def.enableSleep = false;
+    def.restitutionThreshold = scene.tuning?.restitution_threshold ?? def.restitutionThreshold;
+    if (settings.contact_hertz !== undefined) def.contactHertz = settings.contact_hertz;
     this.world = b2.b2CreateWorld(def);
     this.bodies = scene.bodies.map((body) => addBody(b2, this.world, scene, body));
     const byName = new Map(scene.bodies.map((body, i) => [body.name, this.bodies[i]]));
@@ -100,7 +127,7 @@ class Box2dWorld {
   }
 
   step() {
-    this.b2.b2World_Step(this.world, this.tick_s, kSubsteps);
+    this.b2.b2World_Step(this.world, this.tick_s, this.substeps);
   }
 
   poses() {
@@ -112,6 +139,16 @@ class Box2dWorld {
     });
   }
 
+  /** A pose, velocity and spin of each body: thirteen numbers. */
+  motions() {
+    const poses = this.poses();
+    return this.bodies.flatMap((body, i) => {
+      const velocity = this.b2.b2Body_GetLinearVelocity(body);
+      const spin = this.b2.b2Body_GetAngularVelocity(body);
+      return [...poses.slice(7 * i, 7 * i + 7), velocity.x, velocity.y, 0, 0, 0, spin];
+    });
+  }
+
   free() {
     this.b2.b2DestroyWorld(this.world);
   }
@@ -119,5 +156,6 @@ class Box2dWorld {
 
 export async function box2dEngine() {
   const b2 = await Box2DFactory();
-  return { name: 'box2d3-wasm', dimensions: [2], make: (scene) => new Box2dWorld(b2, scene) };
+  return { name: 'box2d3-wasm', dimensions: [2],
+    make: (scene, settings) => new Box2dWorld(b2, scene, { ...kDefaults, ...settings }) };
 }

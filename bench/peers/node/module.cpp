@@ -43,6 +43,19 @@ peers::Accuracy accuracy_of(const solver::WorldState<D>& state) {
                                     [&](std::uint32_t body) { return told_pose(state, body); });
 }
 
+/// Velocities and spins to the buffer, six floats behind each pose; in the plane the last one is
+/// the spin.
+template <int D>
+void write_twists(const std::vector<solver::BodyView<D>>& bodies) {
+  for (std::size_t b = 0; b < bodies.size(); ++b) {
+    float values[6] = {};
+    for (int i = 0; i < D; ++i) values[i] = bodies[b].velocity[i];
+    for (int i = 0; i < solver::Dim<D>::kSpin; ++i)
+      values[solver::Dim<D>::kSpin == 1 ? 5 : 3 + i] = bodies[b].spin[i];
+    std::memcpy(buffer.data() + 52 * b + 28, values, sizeof values);
+  }
+}
+
 std::optional<scenes::Simulation> simulation_of(std::size_t bytes) {
   const scenes::Loaded loaded = scenes::from_json(std::string_view(buffer.data(), bytes));
   if (!loaded.scene) return std::nullopt;
@@ -99,6 +112,22 @@ __attribute__((export_name("poses"))) std::size_t module_poses(int world) {
     std::memcpy(buffer.data() + 28 * i + 12, poses[i].rotation.data(), 16);
   }
   return poses.size();
+}
+
+/// Writes to the buffer of every body its pose, velocity and spin, 13 floats; returns how many
+/// bodies there are.
+__attribute__((export_name("motions"))) std::size_t module_motions(int world) {
+  const std::size_t count = module_poses(world);
+  const std::vector<char> poses = buffer;
+  buffer.resize(count * 52);
+  for (std::size_t i = 0; i < count; ++i)
+    std::memcpy(buffer.data() + 52 * i, poses.data() + 28 * i, 28);
+  const scenes::Simulation& simulation = *simulations[static_cast<std::size_t>(world)];
+  if (simulation.dimension() == 3)
+    write_twists(simulation.spatial()->bodies());
+  else
+    write_twists(simulation.planar()->bodies());
+  return count;
 }
 
 /// Takes the scene of the buffer as that which the ruler measures; 0, or 1 where it is none.

@@ -54,6 +54,13 @@ class OurWorld {
     return Array.from(new Float32Array(this.module.exports.memory.buffer, at, count * 7));
   }
 
+  /** A pose, velocity and spin of each body: thirteen numbers. */
+  motions() {
+    const count = this.module.exports.motions(this.number);
+    const at = this.module.exports.buffer(count * 52);
+    return Array.from(new Float32Array(this.module.exports.memory.buffer, at, count * 13));
+  }
+
   digest() {
     return BigInt.asUintN(64, this.module.exports.digest(this.number)).toString(16).padStart(16, '0');
   }

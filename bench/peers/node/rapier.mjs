@@ -1,5 +1,6 @@
 // Rapier, as its packages of the plane and of space that keep to one result everywhere, with their
-// defaults. The limits of a cone-twist joint are left out there.
+// defaults where nothing else is asked for: four iterations of its solver, which are substeps. The
+// limits of a cone-twist joint are left out there.
 import { filterOf, materialOf, rotationOf, stepSeconds, triple } from './scene.mjs';
 
 const vector = (spatial, [x, y, z]) => (spatial ? { x, y, z } : { x, y });
@@ -78,11 +79,20 @@ function jointData(rapier, spatial, joint) {
   throw new Error(`no ${kind} in this adapter for Rapier`);
 }
 
+/** The mass that a body says, spread as its shapes spread theirs. */
+function setMass(body, colliders, mass) {
+  body.recomputeMassPropertiesFromColliders();
+  const factor = mass / body.mass();
+  for (const collider of colliders) collider.setDensity(collider.density() * factor);
+  body.recomputeMassPropertiesFromColliders();
+}
+
 class RapierWorld {
-  constructor(rapier, scene) {
+  constructor(rapier, scene, settings) {
     this.spatial = scene.dimension === 3;
     this.world = new rapier.World(vector(this.spatial, triple(scene.gravity)));
     this.world.timestep = stepSeconds(scene);
+    if (settings.substeps !== undefined) this.world.numSolverIterations = settings.substeps;
     // Of groups that must not meet themselves, each takes one of Rapier's 16 bits in turn.
     this.bodies = scene.bodies.map((body) => this.#addBody(rapier, scene, body));
     const byName = new Map(scene.bodies.map((body, i) => [body.name, this.bodies[i]]));
@@ -98,8 +108,13 @@ class RapierWorld {
       .setLinvel(...triple(body.velocity).slice(0, this.spatial ? 3 : 2))
       .setRotation(this.spatial ? { x, y, z, w } : (body.angle ?? 0))
       .setAngvel(this.spatial ? vector(true, spin) : spin[0]);
+    desc.setLinearDamping(body.linear_damping ?? 0).setAngularDamping(body.angular_damping ?? 0)
+      .setGravityScale(body.gravity_scale ?? 1);
+    if (body.fixed_rotation) desc.lockRotations();
     const made = this.world.createRigidBody(desc);
-    for (const shape of body.shapes ?? []) this.#addShape(rapier, scene, shape, made);
+    const colliders = (body.shapes ?? []).map(
+      (shape) => this.#addShape(rapier, scene, shape, made));
+    if (body.mass !== undefined) setMass(made, colliders, body.mass);
     return made;
   }
 
@@ -114,7 +129,7 @@ class RapierWorld {
       .setRestitution(material.restitution)
       .setRestitutionCombineRule(rapier.CoefficientCombineRule.Max)
       .setCollisionGroups(((bit << 16) | meets) >>> 0);
-    this.world.createCollider(desc, body);
+    return this.world.createCollider(desc, body);
   }
 
   #addJoint(rapier, joint, byName) {
@@ -142,6 +157,18 @@ class RapierWorld {
     });
   }
 
+  /** A pose, velocity and spin of each body: thirteen numbers. */
+  motions() {
+    const poses = this.poses();
+    return this.bodies.flatMap((body, i) => {
+      const velocity = body.linvel();
+      const spin = body.angvel();
+      const turning = this.spatial ? [spin.x, spin.y, spin.z] : [0, 0, spin];
+      return [...poses.slice(7 * i, 7 * i + 7), velocity.x, velocity.y, velocity.z ?? 0,
+        ...turning];
+    });
+  }
+
   free() {
     this.world.free();
   }
@@ -152,5 +179,6 @@ export async function rapierEngine(dimension) {
   const name = `rapier${dimension}d`;
   const { default: rapier } = await import(`@dimforge/${name}-deterministic-compat`);
   await rapier.init();
-  return { name, dimensions: [dimension], make: (scene) => new RapierWorld(rapier, scene) };
+  return { name, dimensions: [dimension], 
+    make: (scene, settings = {}) => new RapierWorld(rapier, scene, settings) };
 }

@@ -2,11 +2,12 @@
 
 export const triple = (value) => [value?.[0] ?? 0, value?.[1] ?? 0, value?.[2] ?? 0];
 
-/** Friction, restitution of a shape: the scene's first material where it names none. */
+/** Friction, restitution, rolling resistance of a shape: the scene's first material where it names none. */
 export function materialOf(scene, shape) {
   const all = scene.materials ?? [{}];
   const named = all.find((material) => material.name === shape.material) ?? all[0];
-  return { friction: named.friction ?? 0.6, restitution: named.restitution ?? 0 };
+  return { friction: named.friction ?? 0.6, restitution: named.restitution ?? 0,
+    rolling_resistance: named.rolling_resistance ?? 0 };
 }
 
 export function filterOf(shape) {
