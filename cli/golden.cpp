@@ -12,6 +12,7 @@
 #include "cli/replaying.hpp"
 #include "cli/report.hpp"
 #include "cli/side_by_side.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::cli {
 namespace {

@@ -11,6 +11,7 @@
 #include "cli/signals.hpp"
 #include "client/net/tls.hpp"
 #include "client/token_text.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::cli {
 namespace {

@@ -8,6 +8,7 @@
 #include "cli/output.hpp"
 #include "cli/replaying.hpp"
 #include "cli/run_log.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::cli {
 namespace {

@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "bench/accuracy/settings.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::cli {
 namespace {

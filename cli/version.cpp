@@ -1,3 +1,5 @@
+#include "solver/version.hpp"
+
 #include <iostream>
 
 #include "cli/commands.hpp"

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/simulation.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::protocol {
 

@@ -4,6 +4,7 @@
 #include <type_traits>
 
 #include "scenes/fields.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::scenes {
 

@@ -269,7 +269,7 @@ struct Tuning {
   float warm_starting = 1.0f;    ///< Share of the last impulses to start from: 0 to 1.
   float over_relaxation = 1.0f;  ///< Factor on each change of an impulse (SOR): above 0, below 2.
   float baumgarte = 0.2f;
-  float slop = 0.005f;          ///< m of overlap that is left alone.
+  float slop = 0.005f;          ///< m of overlap that is left alone, but by springs (kSoft).
   float correction_max = 0.2f;  ///< m or rad that one position sweep moves a row at most.
   float contact_hertz = 30.0f;  ///< At most an eighth of the substep rate is used.
   float contact_damping_ratio = 10.0f;

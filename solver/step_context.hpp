@@ -18,10 +18,13 @@ struct StepContext {
   Softness joint;
   Softness pseudo;  ///< Of pseudo-velocity sweeps, which are rigid and biased.
   Softness motor;   ///< Of position motors without a frequency of their own.
+  float slop;       ///< m of overlap that velocity sweeps leave alone.
 };
 
 /// Stiffness above a fraction of the substep rate turns into noise: contacts are held to an eighth
 /// of it and joints to a quarter (Catto, Solver2D).
+/// What rests on a spring needs no slop to stay in touch, its load overlaps it; a slop would come
+/// on top of that in every contact. An island at once is rigid, and needs it.
 template <int D>
 StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuning& tuning) {
   StepContext<D> context;
@@ -34,6 +37,9 @@ StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuni
   const float joint_hertz = min(tuning.joint_hertz, 0.25f * context.inverse_h);
   context.pseudo = baumgarte_softness(tuning.baumgarte, context.h);
   context.motor = spring_softness(joint_hertz, tuning.joint_damping_ratio, context.h);
+  const bool springs = tuning.stabilisation == Stabilisation::kSoft &&
+                       tuning.contact_block != ContactBlockRows::kIsland;
+  context.slop = springs ? 0.0f : tuning.slop;
   if (tuning.stabilisation != Stabilisation::kSoft) {
     const bool biased = tuning.stabilisation == Stabilisation::kBaumgarte;
     context.contact = biased ? context.pseudo : kRigid;

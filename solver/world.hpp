@@ -234,8 +234,4 @@ template <int D>
 std::vector<Difference> differences(const WorldState<D>& a, const WorldState<D>& b,
                                     std::size_t limit);
 
-/// Names, for a digest and a handshake, the arithmetic of this solver: equal versions give equal
-/// bits. Raised by every commit that re-mints goldens.
-inline constexpr std::uint32_t kSolverVersion = 10;
-
 }  // namespace cycloid::solver

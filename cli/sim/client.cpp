@@ -7,6 +7,7 @@
 #include "client/replica/replica.hpp"
 #include "client/replica/thin.hpp"
 #include "scenes/catalogue.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::sim {
 namespace {

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solver/version.hpp"
 #include "solver/world.hpp"
 
 namespace cycloid::client {

@@ -8,6 +8,7 @@
 #include "protocol/utf8.hpp"
 #include "scenes/catalogue.hpp"
 #include "scenes/scene.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::protocol {
 namespace {

@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "protocol/crc32c.hpp"
+#include "solver/version.hpp"
 #include "solver/world.hpp"
 
 namespace cycloid::protocol {

@@ -7,6 +7,7 @@
 
 #include "protocol/log/schema.hpp"
 #include "protocol/messages.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::protocol {
 

@@ -3,6 +3,7 @@
 #include <nlohmann/json.hpp>
 
 #include "protocol/text.hpp"
+#include "solver/version.hpp"
 #include "solver/world.hpp"
 
 namespace cycloid::server {

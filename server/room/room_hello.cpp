@@ -2,6 +2,7 @@
 
 #include "protocol/text.hpp"
 #include "server/room/room.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::server {
 namespace {

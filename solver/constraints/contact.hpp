@@ -166,7 +166,7 @@ template <int D, int W>
     return row;
   }
   const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : block.bias_rate;
-  const L overlap = min(point.gap + L(context.tuning.slop), L(0.0f));
+  const L overlap = min(point.gap + L(context.slop), L(0.0f));
   row.bias = select(apart, row.bias, max(rate * overlap, L(-context.tuning.push_speed_max)));
   if (sweep == Sweep::kPseudo) return row;
   row.mass_scale = select(apart, row.mass_scale, block.mass_scale);

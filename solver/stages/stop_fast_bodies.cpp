@@ -56,6 +56,14 @@ static bool stays_clear(const BodySweep<D>& a, const BodySweep<D>& b, float reac
   return dot(nearest, nearest) > reach * reach;
 }
 
+/// How far from what it meets a body stops, m: near enough that the next tick finds the contact,
+/// far enough that this one did not touch, and little beside its thickness. A card that stops as
+/// far from the next one as it is thick is held up by nothing, and its house falls.
+static float target_of(const Tuning& tuning, float thickness) {
+  const float far = min(0.5f * tuning.slop, 0.5f * thickness);
+  return min(max(far, 1.0e-4f), max(tuning.speculative_distance, 1.0e-4f));
+}
+
 /// The fraction of the tick at which one shape meets another that it did not touch at the start.
 /// Those that touched belong to the contact solver.
 template <int D>
@@ -63,10 +71,8 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
                          const StepScratch<D>& scratch, std::uint32_t shape, std::uint32_t other,
                          const BodySweep<D>& sweep) {
   const Shape<D>& a = state.shapes[other];
-  // Near enough that the next tick finds the contact, far enough that this one did not touch.
-  const float target = min(max(0.5f * context.tuning.slop, 1.0e-4f),
-                           max(context.tuning.speculative_distance, 1.0e-4f));
   const Shape<D>& b = state.shapes[shape];
+  const float target = target_of(context.tuning, state.bodies[b.body].thickness);
   const BodySweep<D> other_sweep = sweep_of(context, state, scratch, a.body);
   // A hundredth more than what counts as a touch covers all rounding.
   const float reach = 1.01f * (state.bodies[a.body].extent + state.bodies[b.body].extent + target);

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "client/replica/thin.hpp"
+#include "solver/version.hpp"
 #include "tests/client/fed.hpp"
 
 namespace cycloid::client {

@@ -9,6 +9,7 @@
 
 #include "scenes/golden.hpp"
 #include "scenes/simulation.hpp"
+#include "solver/version.hpp"
 
 namespace cycloid::scenes {
 

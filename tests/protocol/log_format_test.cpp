@@ -6,6 +6,7 @@
 #include <array>
 
 #include "protocol/little_endian.hpp"
+#include "solver/version.hpp"
 #include "tests/protocol/samples.hpp"
 
 namespace cycloid::protocol {

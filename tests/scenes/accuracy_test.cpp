@@ -5,6 +5,8 @@
 
 #include <functional>
 
+#include "solver/version.hpp"
+
 namespace cycloid::scenes {
 namespace {
 

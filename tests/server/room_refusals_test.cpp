@@ -3,6 +3,7 @@
 #include <functional>
 
 #include "protocol/text.hpp"
+#include "solver/version.hpp"
 #include "tests/server/room_fixture.hpp"
 
 namespace cycloid::server {

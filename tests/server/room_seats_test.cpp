@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "solver/version.hpp"
 #include "tests/server/room_fixture.hpp"
 
 namespace cycloid::server {

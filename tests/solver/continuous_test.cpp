@@ -83,6 +83,19 @@ TEST(Continuous, ASpinningRodDoesNotPassThePeg) {
   EXPECT_TRUE(passes(0, 50.0f));
 }
 
+// Half a slop is more than a card is thick: stopped there it would hang in the air.
+TEST(Continuous, ACardStopsNoFartherAwayThanAQuarterOfItsThickness) {
+  World<2> world = make_world(restless());
+  add_wall(world, 3.0f);
+  BodyDef<2> def;
+  def.velocity = {{100.0f, 0.0f}};
+  const BodyId card = add(world, def, box(0.001f, 0.1f));
+  step(world, 2);  // 1.67 m in the first; in the second the wall is in its way.
+  const float gap = 2.99f - (view(world, card).position[0] + 0.001f);
+  EXPECT_GT(gap, 0.0f);
+  EXPECT_LT(gap, 0.00065f);
+}
+
 TEST(Continuous, ItDoesNotHoldWhatSlidesOrRolls) {
   WorldDef<2> def = restless();
   def.gravity = {{0.0f, -10.0f}};
