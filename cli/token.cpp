@@ -142,11 +142,14 @@ Exit make_token(MakeToken wish, bool json) {
   token.role = role_of(wish.role);
   if (token.not_before_unix_s == 0) token.not_before_unix_s = now_unix_s();
   token.expires_unix_s = token.not_before_unix_s + wish.lifetime_s;
-  server::system_random()(token.nonce);
   if (const std::string mistake = server::mistake_of(token); !mistake.empty())
     throw Failure(kExitUsage, mistake);
   const SigningKey key = read_signing_key(wish.key);
-  const std::string text = server::token_text(server::sign_token(token, key));
+  std::string text;
+  do {  // A token that begins with '-' would be taken for an option wherever it is pasted.
+    server::system_random()(token.nonce);
+    text = server::token_text(server::sign_token(token, key));
+  } while (text[0] == '-');
   if (!json) {
     std::cout << text << '\n';
     return kExitGood;

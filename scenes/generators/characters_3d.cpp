@@ -98,7 +98,7 @@ Scene character_course_3d() {
                               "corner; and over hills.");
   scene.bodies = {course(), hills()};
   SceneBody crate =
-      body_at("crate", {9.5f + 3.0f, kPlateau + 0.35f, 0.1f}, solid_box({0.35f, 0.35f, 0.35f}));
+      body_at("crate", {9.5f + 3.0f, kPlateau + 0.35f, 0.29f}, solid_box({0.35f, 0.35f, 0.35f}));
   crate.shapes[0].density = 100.0f;
   scene.bodies.push_back(crate);
   for (int i = 0; i < 4; ++i)
