@@ -58,7 +58,8 @@ static void add_setting(const SceneChart& chart, const ChartPoint& point, CsvRow
   const Setting& setting = point.measured.setting;
   row.add("scene", field(chart.name));
   row.add("ticks", whole(chart.subject.ticks));
-  row.add("method", setting.method);
+  const bool plain = setting.method.find(',') == std::string::npos;
+  row.add("method", plain ? setting.method : field(setting.method));
   row.add("substeps", whole(setting.substeps));
   row.add("sweeps", whole(setting.sweeps));
   row.add("relax_sweeps", whole(setting.relax_sweeps));
