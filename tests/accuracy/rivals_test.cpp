@@ -1,7 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <unistd.h>
 
-#include <cstring>
+#include <cmath>
 #include <filesystem>
 #include <fstream>
 #include <nlohmann/json.hpp>
@@ -64,9 +65,9 @@ void append_motion(const solver::BodyView<D>& body, std::string& bytes) {
     numbers[7 + i] = body.velocity[i];
   }
   if constexpr (solver::Dim<D>::kSpin == 1) {
-    const float half = 0.5f * std::atan2(body.rotation[1], body.rotation[0]);
-    numbers[5] = std::sin(half);
-    numbers[6] = std::cos(half);
+    // Of half the angle, by a root alone, which rounds alike everywhere. @pre not half a turn.
+    numbers[6] = std::sqrt(0.5f * (1.0f + body.rotation[0]));
+    numbers[5] = 0.5f * body.rotation[1] / numbers[6];
     numbers[12] = body.spin[0];
   } else {
     for (int i = 0; i < 4; ++i) numbers[3 + i] = body.rotation[i];
