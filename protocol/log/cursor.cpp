@@ -30,7 +30,8 @@ LogCursor::LogCursor(std::span<const std::byte> bytes, const LogStart& start,
     (void)end(LogState::kCorrupt, "no keyframe" + at_byte(place.at));
     return;
   }
-  chunks_ = ChunkReader(bytes, start.salt, start.header_bytes, place.at, place.before);
+  const auto at = static_cast<std::size_t>(place.at);  // Below the log's size, as was just seen.
+  chunks_ = ChunkReader(bytes, start.salt, start.header_bytes, at, place.before);
 }
 
 LogCursor::Step LogCursor::end(LogState state, const std::string& reason) {

@@ -115,10 +115,10 @@ std::optional<InputFrame> unpack_frame(std::span<const std::byte> bytes, std::st
   FrameReader from(bytes);
   InputFrame frame;
   frame.tick = from.number(std::numeric_limits<std::uint64_t>::max());
-  const std::uint64_t seats = from.number(scenes::kSeatsMax);
+  const auto seats = static_cast<std::size_t>(from.number(scenes::kSeatsMax));
   const bool begun = !from.failed() && frame.tick != 0 && seats <= from.bytes_left();
   if (begun) frame.seats.reserve(seats);
-  for (std::uint64_t i = 0; begun && i < seats && !from.failed(); ++i) {
+  for (std::size_t i = 0; begun && i < seats && !from.failed(); ++i) {
     frame.seats.push_back(from.seat());
   }
   const bool more = begun && !from.failed() && !from.at_end();
