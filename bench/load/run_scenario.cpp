@@ -14,7 +14,8 @@
 namespace cycloid::load {
 namespace {
 
-constexpr double kWarmUpS = 3.0;
+constexpr double kWarmUpS = 5.0;
+constexpr double kCatchUpS = 0.5;
 constexpr std::chrono::nanoseconds kTick{16'666'667};
 
 /// A folder of its own that is gone afterwards.
@@ -128,11 +129,9 @@ class Crowd {
     io_.run_for(std::chrono::duration_cast<std::chrono::nanoseconds>(
         std::chrono::duration<double>(seconds)));
   }
-  /// Takes what has come already.
-  void catch_up() {
-    io_.restart();
-    (void)io_.poll();
-  }
+  /// Takes what has come already. For a bounded time: clients that cannot keep up never have taken
+  /// all.
+  void catch_up() { run_for(kCatchUpS); }
   void begin_measuring() {
     for (GroupResult& result : results_) result.tally.begin_measuring();
   }
