@@ -9,6 +9,7 @@
 #include <nlohmann/json.hpp>
 #include <stdexcept>
 
+#include "bench/load/join_age.hpp"
 #include "bench/load/scenario.hpp"
 
 namespace cycloid::load {
@@ -80,6 +81,29 @@ void print(const Json& result) {
   std::fflush(stdout);
 }
 
+/// A match of one minute, and of one hour, at 60 Hz.
+constexpr std::uint64_t kMinuteTicks = 60 * 60;
+constexpr std::uint64_t kHourTicks = 60 * kMinuteTicks;
+constexpr const char* kJoinsName = "joins";
+
+Json joins_at_both_ages(const std::string& program) {
+  std::printf("Newcomers to a match of a minute's and of an hour's ticks\n");
+  Json ages = Json::array();
+  for (const JoinAge& age : measure_joins(program, {kMinuteTicks, kHourTicks})) {
+    std::printf(
+        "%-11s tick %7llu: %d joined, state whole after p50 %.2f, at most %.2f ms; %.0f MB\n",
+        kJoinsName, static_cast<unsigned long long>(age.tick), age.joins, age.p50_ms, age.max_ms,
+        age.resident_mb);
+    ages.push_back({{"tick", age.tick},
+                    {"joins", age.joins},
+                    {"p50_ms", age.p50_ms},
+                    {"max_ms", age.max_ms},
+                    {"resident_mb", age.resident_mb}});
+  }
+  std::fflush(stdout);
+  return {{"scenario", kJoinsName}, {"ages", std::move(ages)}};
+}
+
 /// Two descriptors per connection of the largest scenario, on both sides; the server inherits it.
 void raise_descriptors() {
   rlimit limit{};
@@ -89,6 +113,7 @@ void raise_descriptors() {
 }
 
 bool is_scenario(const std::string& name) {
+  if (name == kJoinsName) return true;
   const std::vector<Scenario> all = scenarios();
   return std::any_of(all.begin(), all.end(), [&](const auto& one) { return one.name == name; });
 }
@@ -132,6 +157,9 @@ int run(int argc, char** argv) {
     print(all.back());
     for (const std::string& failure : failures) std::printf("  not held: %s\n", failure.c_str());
     if (!failures.empty()) exit = 1;
+  }
+  if (wanted.empty() || std::find(wanted.begin(), wanted.end(), kJoinsName) != wanted.end()) {
+    all.push_back(joins_at_both_ages(program));
   }
   if (!json_file.empty()) write_json(json_file, all);
   return exit;

@@ -1,5 +1,3 @@
-#include <unistd.h>
-
 #include <atomic>
 #include <filesystem>
 #include <fstream>
@@ -7,6 +5,7 @@
 #include <thread>
 
 #include "bench/load/metrics_page.hpp"
+#include "bench/load/places.hpp"
 #include "bench/load/scenario.hpp"
 #include "bench/load/server_process.hpp"
 #include "scenes/catalogue.hpp"
@@ -17,23 +16,6 @@ namespace {
 constexpr double kWarmUpS = 5.0;
 constexpr double kCatchUpS = 0.5;
 constexpr std::chrono::nanoseconds kTick{16'666'667};
-
-/// A folder of its own that is gone afterwards.
-class OwnFolder {
- public:
-  OwnFolder()
-      : path_(std::filesystem::temp_directory_path() /
-              ("cycloid-load-" + std::to_string(::getpid()))) {
-    std::filesystem::create_directories(path_);
-  }
-  OwnFolder(const OwnFolder&) = delete;
-  OwnFolder& operator=(const OwnFolder&) = delete;
-  ~OwnFolder() { std::filesystem::remove_all(path_); }
-  std::filesystem::path operator/(const char* name) const { return path_ / name; }
-
- private:
-  std::filesystem::path path_;
-};
 
 /// A closed room with a ball for every seat.
 scenes::Scene seats_scene(int seats) {
@@ -103,12 +85,6 @@ class BareTimer {
   Samples late_ms_;
   std::thread thread_;
 };
-
-std::uint16_t free_port() {
-  asio::io_context io;
-  asio::ip::tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
-  return acceptor.local_endpoint().port();
-}
 
 /// All clients of a scenario, on this thread.
 class Crowd {

@@ -21,6 +21,7 @@ class Samples {
     const std::size_t at = (values_.size() * permille + 999) / 1000;
     return values_[std::min(values_.size(), std::max<std::size_t>(at, 1)) - 1];
   }
+  std::size_t size() const { return values_.size(); }
   void clear() { values_.clear(); }
 
  private:

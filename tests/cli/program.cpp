@@ -61,9 +61,14 @@ Background::Background(const std::vector<std::string>& arguments, const std::str
     : pid_(spawn(program, arguments, folder_.file("out"), folder_.file("err"))) {}
 
 Background::~Background() {
+  kill_now();
+}
+
+void Background::kill_now() {
   if (reaped_) return;
   kill(pid_, SIGKILL);
   wait_for_exit(pid_);
+  reaped_ = true;
 }
 
 std::string Background::wait_for(const std::string& words) const {

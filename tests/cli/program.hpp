@@ -46,6 +46,7 @@ class Background {
   /// What follows `words` on its line, once such a line is there; "" after ten seconds without.
   std::string wait_for(const std::string& words) const;
   void ask_to_stop();
+  void kill_now();
   Ran wait();
 
  private:
