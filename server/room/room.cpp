@@ -95,7 +95,7 @@ bool Room::has_output(PeerId id) const {
   const Peer& peer = found->second;
   if (peer.outbox.has_output(peer.parts_left)) return true;
   if (!peer.state_due || !peer.playing()) return false;
-  return peer.delay_ticks == 0 || keyframes_.at_or_before(visible_tick(peer)) != nullptr;
+  return peer.delay_ticks == 0 || late_state(peer) != nullptr;
 }
 
 std::vector<Shared> Room::take_output(PeerId id) {

@@ -210,6 +210,9 @@ class Room {
 
   // room_publish.cpp: what peers hear.
   std::uint64_t visible_tick(const Peer& peer) const;
+  /// The kept state that one who sees the match late is to be given. None is older than what it has
+  /// been sent: frames go on behind it, and none comes twice. Null until there is one.
+  std::shared_ptr<const ExactState> late_state(const Peer& peer) const;
   void publish();
   void send_snapshot(Peer& peer);
   void send_frames(PeerId id, Peer& peer, std::int64_t now_ns);

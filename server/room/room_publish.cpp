@@ -9,6 +9,13 @@ std::uint64_t Room::visible_tick(const Peer& peer) const {
   return made > peer.delay_ticks ? made - peer.delay_ticks : 0;
 }
 
+std::shared_ptr<const ExactState> Room::late_state(const Peer& peer) const {
+  auto state = keyframes_.at_or_before(visible_tick(peer));
+  const bool goes_on = peer.mode == protocol::Mode::kLockstep && !peer.welcome_due;
+  if (state && goes_on && state->tick() + 1 < peer.next_frame) return nullptr;
+  return state;
+}
+
 void Room::publish() {
   const std::uint64_t tick = simulation_.tick();
   const std::int64_t now_ns = hooks_.now_ns();
@@ -41,6 +48,8 @@ void Room::send_snapshot(Peer& peer) {
 void Room::send_frames(PeerId id, Peer& peer, std::int64_t now_ns) {
   const std::int64_t most = options_.limits.queue_age.count();
   if (peer.state_due) {
+    const bool can_begin = peer.delay_ticks == 0 || late_state(peer) != nullptr;
+    if (!can_begin) peer.state_due_ns = now_ns;  // It is not the client that is slow.
     if (now_ns - peer.state_due_ns >= most) overrun(id, peer);
     return;
   }
@@ -94,9 +103,8 @@ void Room::overrun(PeerId id, Peer& peer) {
 
 void Room::begin_state(PeerId id, Peer& peer) {
   const bool delayed = peer.delay_ticks > 0;
-  const auto state =
-      delayed ? keyframes_.at_or_before(visible_tick(peer)) : states_.of(simulation_, digest_);
-  if (!state) return;  // A rewind has taken what it may see; time brings the next.
+  const auto state = delayed ? late_state(peer) : states_.of(simulation_, digest_);
+  if (!state) return;  // Time brings the next.
   peer.state_due = false;
   if (peer.welcome_due) say_welcome(id, peer, state->tick());
   if (!peer.playing()) return;

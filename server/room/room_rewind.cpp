@@ -111,10 +111,14 @@ void Room::rewind_peers(std::uint64_t tick) {
     if (peer.delay_ticks > 0 && seen <= tick) continue;
     want_state(peer);
     peer.exact_tick = 0;
+    // Who sees the match late is given a kept state, which may be older than what it may see.
     const std::uint64_t shown = visible_tick(peer);
+    const auto kept = peer.delay_ticks > 0 ? keyframes_.at_or_before(shown) : nullptr;
+    const std::uint64_t from = kept != nullptr ? kept->tick() : shown;
+    peer.next_frame = from + 1;
     answer(id, peer,
-           protocol::RoomNotice{protocol::NoticeKind::kRewound, shown, shown,
-                                "the match goes on from tick " + std::to_string(shown)});
+           protocol::RoomNotice{protocol::NoticeKind::kRewound, shown, from,
+                                "the match goes on from tick " + std::to_string(from)});
   }
 }
 
