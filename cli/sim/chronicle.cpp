@@ -4,8 +4,8 @@ namespace cycloid::sim {
 
 const char* invariant_name(Invariant invariant) {
   static constexpr std::array<const char*, static_cast<std::size_t>(Invariant::kCount)> kNames = {
-      "frames", "digests", "inputs",   "seats",    "queues",
-      "log",    "honesty", "refusals", "deadline", "liveness"};
+      "frames",  "digests",  "inputs",   "seats", "queues",  "log",
+      "honesty", "refusals", "deadline", "delay", "liveness"};
   return kNames[static_cast<std::size_t>(invariant)];
 }
 
@@ -19,7 +19,7 @@ const char* event_name(Event event) {
       "restarts",      "short writes",    "interrupted",  "write errors",
       "disk full",     "sync errors",     "disk stalls",  "flips on read",
       "log verified",  "rotations",       "slow dropped", "tokens shown",
-      "seats resumed", "quantised shown", "rewinds"};
+      "seats resumed", "quantised shown", "rewinds",      "ticks seen late"};
   return kNames[static_cast<std::size_t>(event)];
 }
 

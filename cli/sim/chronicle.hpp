@@ -23,6 +23,7 @@ enum class Invariant : std::uint8_t {
   kHonesty,   ///< Who keeps the rules is never told otherwise, nor believes that of the server.
   kRefusals,  ///< Who is refused has changed nothing.
   kDeadline,  ///< Who says no hello is gone in time, whatever bytes come.
+  kDelay,     ///< Who sees the match late sees nothing sooner.
   kLiveness,  ///< When the faults are over, all that live come to be in sync.
   kCount
 };
@@ -65,6 +66,7 @@ enum class Event : std::uint8_t {
   kSeatResumed,  ///< By a secret of the last welcome.
   kQuantisedShown,
   kRewind,
+  kSeenLate,  ///< By a spectator, a tick that was right.
   kCount
 };
 const char* event_name(Event event);

@@ -132,7 +132,9 @@ void SimClient::read() {
 
 void SimClient::take(const protocol::ServerMessage& message) {
   if (const auto* welcome = std::get_if<protocol::Welcome>(&message)) {
-    observer_->welcomed(welcome->tick, wire_->timeline);
+    const bool looks_on = welcome->seat < 0;
+    observer_->welcomed(welcome->tick, wire_->timeline,
+                        looks_on ? settings_->spectator_delay_ticks : 0);
   }
   observer_->heard(message);
   const std::uint64_t snapshots = follower_->progress().snapshots;
@@ -282,7 +284,11 @@ std::string SimClient::lacks() const {
   if (observer_->verified_tick() != progress.last_tick)
     return "holds a state that was not found right";
   const std::uint64_t made = room.tick();
-  const std::uint64_t most = 4 + (lockstep() ? 0 : settings_->limits.snapshot_ticks);
+  const std::uint64_t late = observer_->delay_ticks();
+  // Who sees the match late is shown kept states, where it is shown states.
+  const std::uint64_t between =
+      late > 0 ? settings_->limits.keyframe_ticks : settings_->limits.snapshot_ticks;
+  const std::uint64_t most = 4 + late + (lockstep() ? 0 : between);
   if (progress.last_tick + most >= made) return "";
   return "is at tick " + std::to_string(progress.last_tick) + " of " + std::to_string(made);
 }

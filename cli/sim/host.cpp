@@ -42,6 +42,8 @@ server::RoomOptions RoomHost::room_options() const {
   }
   options.scene_digest = scene_digest_;
   options.name = name();
+  const bool forgets = settings_->plant == Plant::kRoomForgetsDelay;
+  options.spectator_delay_ticks = forgets ? 0 : settings_->spectator_delay_ticks;
   options.tick_rate_millihertz = settings_->tick_rate_millihertz;
   options.stop_on_log_error = settings_->server.stop_on_log_error;
   return options;

@@ -1,5 +1,6 @@
 #include "cli/sim/ledger.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace cycloid::sim {
@@ -61,6 +62,7 @@ void Ledger::branch(std::uint64_t tick, std::span<const std::byte> state) {
   }
   timelines_.push_back(timelines_.back());
   now().ticks.resize(static_cast<std::size_t>(tick));
+  now().branch_tick = tick;
   held_.assign(held_.size(), false);
   last_given_.assign(last_given_.size(), {});
   for (const protocol::LogTick& made : now().ticks) {
@@ -77,6 +79,24 @@ void Ledger::branch(std::uint64_t tick, std::span<const std::byte> state) {
   if (is_it) return;
   chronicle_->violate(Invariant::kDigests,
                       "the state of tick " + std::to_string(tick) + " to go on from is another");
+}
+
+bool Ledger::next_is_same(std::size_t timeline, std::uint64_t tick) const {
+  for (std::uint64_t t = timelines_[timeline + 1].branch_tick + 1; t <= tick; ++t) {
+    const protocol::LogTick* here = at(t, timeline);
+    const protocol::LogTick* next = at(t, timeline + 1);
+    if (here == nullptr || next == nullptr) return false;
+    if (here->digest != next->digest || !(here->frame == next->frame)) return false;
+  }
+  return true;
+}
+
+std::uint64_t Ledger::highest_tick() const {
+  std::uint64_t highest = 0;
+  for (const Timeline& timeline : timelines_) {
+    highest = std::max<std::uint64_t>(highest, timeline.ticks.size());
+  }
+  return highest;
 }
 
 void Ledger::show(const protocol::LogTick& tick) {

@@ -37,6 +37,11 @@ class Ledger {
   void branch(std::uint64_t tick, std::span<const std::byte> state);
   std::size_t timeline() const { return timelines_.size() - 1; }  ///< The one that goes on.
 
+  /// Whether the next timeline has the same ticks up to this one. @pre there is a next one
+  bool next_is_same(std::size_t timeline, std::uint64_t tick) const;
+  /// The highest that was ever made, in whichever timeline.
+  std::uint64_t highest_tick() const;
+
   std::uint64_t ticks() const { return now().ticks.size(); }
   std::uint64_t ticks(std::size_t timeline) const { return timelines_[timeline].ticks.size(); }
   std::uint64_t digest() const { return digest_; }  ///< Of all frames and digests.
@@ -72,6 +77,7 @@ class Ledger {
   struct Timeline {
     std::vector<protocol::LogTick> ticks;
     std::vector<std::vector<scenes::Pose>> poses;  ///< By tick, from 0 on.
+    std::uint64_t branch_tick = 0;                 ///< The last that is of the timeline before.
   };
   Timeline& now() { return timelines_.back(); }
   const Timeline& now() const { return timelines_.back(); }

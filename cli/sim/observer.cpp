@@ -37,6 +37,7 @@ bool is_among(const scenes::Pose& shown, const std::vector<scenes::Pose>& were) 
 
 void Observer::heard(const protocol::ServerMessage& message) {
   if (excused_) return;
+  check_delay(message);
   if (const auto* frame = std::get_if<protocol::InputFrame>(&message)) return on_frame(*frame);
   if (const auto* snapshot = std::get_if<protocol::Snapshot>(&message)) {
     return on_exact_state(snapshot->tick);
@@ -62,8 +63,32 @@ void Observer::heard(const protocol::ServerMessage& message) {
   verified_tick_ = 0;
 }
 
-void Observer::welcomed(std::uint64_t tick, std::size_t timeline) {
+/// What it hears was sent a while ago, so this is never too strict.
+void Observer::check_delay(const protocol::ServerMessage& message) {
+  if (delay_ticks_ == 0) return;
+  std::uint64_t tick = 0;
+  const auto tell = [&](const auto& said) {
+    if constexpr (requires { said.tick; }) tick = said.tick;
+  };
+  std::visit(tell, message);
+  const std::uint64_t highest = ledger_->highest_tick();
+  if (tick + delay_ticks_ <= std::max(highest, delay_ticks_)) return;
+  wrong(Invariant::kDelay, "hears of tick " + std::to_string(tick) + " of " +
+                               std::to_string(highest) + ", and is to see it " +
+                               std::to_string(delay_ticks_) + " ticks late");
+}
+
+/// Who sees the match late and has seen nothing of what was taken back is not told that it was.
+bool Observer::follows_branch(std::uint64_t seen_tick) {
+  if (delay_ticks_ == 0 || timeline_ == ledger_->timeline()) return false;
+  if (!ledger_->next_is_same(timeline_, seen_tick)) return false;
+  ++timeline_;
+  return true;
+}
+
+void Observer::welcomed(std::uint64_t tick, std::size_t timeline, std::uint64_t delay_ticks) {
   welcomed_ = true;
+  delay_ticks_ = delay_ticks;
   timeline_ = timeline;
   last_frame_ = exact_tick_ = tick;
 }
@@ -79,6 +104,9 @@ void Observer::on_exact_state(std::uint64_t tick) {
 void Observer::on_frame(const protocol::InputFrame& frame) {
   const std::string name = "the frame of tick " + std::to_string(frame.tick);
   const protocol::LogTick* confirmed = ledger_->at(frame.tick, timeline_);
+  while ((confirmed == nullptr || !(confirmed->frame == frame)) && follows_branch(last_frame_)) {
+    confirmed = ledger_->at(frame.tick, timeline_);
+  }
   if (confirmed == nullptr) return wrong(Invariant::kFrames, name + " is not confirmed");
   if (!(confirmed->frame == frame)) {
     return wrong(Invariant::kFrames, name + " is not the one that was confirmed");
@@ -97,6 +125,8 @@ std::uint64_t Observer::new_tick(const client::Follower& follower) {
   if (excused_ || progress.phase != client::Phase::kRunning) return 0;
   const std::uint64_t tick = progress.last_tick;
   if (tick == verified_tick_ || tick == 0) return 0;
+  while (ledger_->at(tick, timeline_) == nullptr && follows_branch(verified_tick_)) {
+  }
   if (ledger_->at(tick, timeline_) != nullptr) return tick;
   wrong(Invariant::kDigests, "is at tick " + std::to_string(tick) + ", which is not confirmed");
   return 0;
@@ -105,13 +135,29 @@ std::uint64_t Observer::new_tick(const client::Follower& follower) {
 void Observer::check_state(const client::Follower& follower) {
   const std::uint64_t tick = new_tick(follower);
   if (tick == 0 || follower.simulation().tick() != tick) return;
-  if (follower.simulation().digest() != ledger_->at(tick, timeline_)->digest) {
+  const std::uint64_t digest = follower.simulation().digest();
+  while (digest != ledger_->at(tick, timeline_)->digest && follows_branch(verified_tick_) &&
+         ledger_->at(tick, timeline_) != nullptr) {
+  }
+  const protocol::LogTick* confirmed = ledger_->at(tick, timeline_);
+  if (confirmed == nullptr || digest != confirmed->digest) {
     if (disturbed_) return;
     return wrong(Invariant::kDigests,
                  "its state of tick " + std::to_string(tick) + " is not the server's");
   }
   disturbed_ = false;  // What one bit did may also die out.
+  verify(tick);
+}
+
+void Observer::verify(std::uint64_t tick) {
   verified_tick_ = tick;
+  if (delay_ticks_ > 0) chronicle_->count(Event::kSeenLate);
+}
+
+bool Observer::is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag) const {
+  std::uint64_t then = tick;
+  while (then > 0 && may_lag && !is_among(pose, ledger_->poses(then, timeline_))) --then;
+  return is_among(pose, ledger_->poses(then, timeline_));
 }
 
 void Observer::check_shown(const client::Follower& follower, bool may_lag) {
@@ -124,14 +170,16 @@ void Observer::check_shown(const client::Follower& follower, bool may_lag) {
                  "shows " + std::to_string(shown.size()) + " bodies of " + std::to_string(bodies));
   }
   for (const scenes::Pose& pose : shown) {
-    std::uint64_t then = tick;
-    while (then > 0 && may_lag && !is_among(pose, ledger_->poses(then, timeline_))) --then;
-    if (is_among(pose, ledger_->poses(then, timeline_))) continue;
+    bool right = is_shown_right(pose, tick, may_lag);
+    while (!right && follows_branch(verified_tick_) && tick <= ledger_->ticks(timeline_)) {
+      right = is_shown_right(pose, tick, may_lag);
+    }
+    if (right) continue;
     return wrong(Invariant::kDigests, "shows body " + std::to_string(pose.index) + " at tick " +
                                           std::to_string(tick) + " where it was not");
   }
   chronicle_->count(Event::kQuantisedShown);
-  verified_tick_ = tick;
+  verify(tick);
 }
 
 }  // namespace cycloid::sim

@@ -16,7 +16,8 @@ class Observer {
       : ledger_(&ledger), name_(std::move(name)), chronicle_(&chronicle) {}
 
   /// The room lets the client in, in this timeline of its ledger.
-  void welcomed(std::uint64_t tick, std::size_t timeline);
+  /// @param delay_ticks  By which it sees the match late.
+  void welcomed(std::uint64_t tick, std::size_t timeline, std::uint64_t delay_ticks);
   /// Before the follower has it.
   void heard(const protocol::ServerMessage& message);
   /// After the follower took what was heard: its state is the confirmed one.
@@ -38,12 +39,17 @@ class Observer {
 
   /// The last tick at which its state was found to be the confirmed one.
   std::uint64_t verified_tick() const { return verified_tick_; }
+  std::uint64_t delay_ticks() const { return delay_ticks_; }
 
  private:
   /// The confirmed tick that the follower holds, where it has not been looked at yet; else 0.
   std::uint64_t new_tick(const client::Follower& follower);
   void on_frame(const protocol::InputFrame& frame);
   void on_exact_state(std::uint64_t tick);
+  void check_delay(const protocol::ServerMessage& message);
+  bool follows_branch(std::uint64_t seen_tick);
+  bool is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag) const;
+  void verify(std::uint64_t tick);
   void wrong(Invariant invariant, const std::string& text) {
     chronicle_->violate(invariant, name_ + ": " + text);
   }
@@ -55,6 +61,7 @@ class Observer {
   std::uint64_t last_frame_ = 0;
   std::uint64_t exact_tick_ = 0;  ///< Of the last exact state announced: frames may go on there.
   std::uint64_t verified_tick_ = 0;
+  std::uint64_t delay_ticks_ = 0;
   bool welcomed_ = false;
   bool excused_ = false;
   bool disturbed_ = false;

@@ -48,7 +48,8 @@ const char* plant_name(Plant plant) {
       "log-spoils-keyframe",
       "gate-trusts-tokens",
       "room-gives-equal-secrets",
-      "room-hides-rewind"};
+      "room-hides-rewind",
+      "room-forgets-delay"};
   return kNames[static_cast<std::size_t>(plant)];
 }
 

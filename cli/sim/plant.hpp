@@ -29,6 +29,7 @@ enum class Plant : std::uint8_t {
   kGateTrustsTokens,   ///< Without a look at them.
   kRoomGivesEqualSecrets,
   kRoomHidesRewind,
+  kRoomForgetsDelay,  ///< Of those who are to see the match late.
   kCount
 };
 const char* plant_name(Plant plant);

@@ -162,6 +162,7 @@ Settings draw_settings(std::uint64_t seed) {
   settings.disk = draw_disk(Swarm(root.fork(105)));
   draw_admission(settings, Swarm(root.fork(106)));
   settings.server.rewinds = Swarm(root.fork(107)).rate(1, 4);
+  settings.spectator_delay_ticks = Swarm(root.fork(108)).rate(60, 300);
   return settings;
 }
 

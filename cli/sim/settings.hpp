@@ -71,6 +71,7 @@ struct Settings {
   std::uint32_t rooms = 1;
   std::uint32_t players = 2;  ///< Of a room, at most its seats.
   std::uint32_t spectators = 0;
+  std::uint64_t spectator_delay_ticks = 0;  ///< By which they see the match late.
   std::uint32_t hostiles = 0;       ///< Of a room: peers that are refused, whatever they try.
   std::uint32_t troublemakers = 0;  ///< Of a room: peers that are let in, and then break the rules.
   std::uint32_t snapshots_of_million = 0;  ///< Of clients, how many are fed snapshots.

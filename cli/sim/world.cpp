@@ -54,6 +54,13 @@ class World {
                                      settings_.tick_rate_millihertz);
   }
 
+  /// From a state that is kept to when a spectator may see it, in the worst case.
+  std::int64_t sees_late_ns() const {
+    if (settings_.spectators == 0 || settings_.spectator_delay_ticks == 0) return 0;
+    const std::uint64_t ticks = settings_.spectator_delay_ticks + settings_.limits.keyframe_ticks;
+    return static_cast<std::int64_t>(ticks * 1'000'000'000'000 / settings_.tick_rate_millihertz);
+  }
+
   void people(std::size_t room) {
     const std::uint64_t base = 1000 * (room + 1);
     Random random = root_.fork(base);
@@ -133,7 +140,7 @@ class World {
   void converge() {
     const std::int64_t most = settings_.client.silence_ns + settings_.limits.idle.count() +
                               settings_.limits.handshake.count() + settings_.limits.resume.count() +
-                              kConvergenceSlackNs;
+                              kConvergenceSlackNs + sees_late_ns();
     const std::int64_t end = chronicle_.now_ns + most;
     while (!chronicle_.violation() && !lacks().empty()) {
       if (chronicle_.now_ns > end) {

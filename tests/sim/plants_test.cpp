@@ -36,6 +36,7 @@ const PlantCase kPlants[] = {
     {Plant::kGateTrustsTokens, {Invariant::kRefusals}},
     {Plant::kRoomGivesEqualSecrets, {Invariant::kHonesty}},
     {Plant::kRoomHidesRewind, {Invariant::kFrames, Invariant::kHonesty}},
+    {Plant::kRoomForgetsDelay, {Invariant::kDelay}},
 };
 
 class SimPlants : public testing::TestWithParam<PlantCase> {};
