@@ -20,7 +20,9 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
 #else
 
 #include <atomic>
+#include <condition_variable>
 #include <cstdint>
+#include <mutex>
 #include <thread>
 #include <vector>
 
@@ -31,15 +33,37 @@ namespace cycloid::solver {
 /// between looks, so where there are more workers than processors the others go on meanwhile.
 static constexpr int kLooks = 200;
 
-/// Returns once `value` is not `old`, or sooner.
+/// A number to wait for. Not std::atomic's own `wait`: where the system has no futex, such as on
+/// Windows, GCC 12's library looks at the number before it takes the lock that it sleeps by, and a
+/// change between the two wakes nobody.
 template <class T>
-static void wait_while(const std::atomic<T>& value, T old) {
-  for (int i = 0; i < kLooks; ++i) {
-    if (value.load() != old) return;
-    std::this_thread::yield();
+struct Awaited {
+  std::atomic<T> value{};
+
+  /// Returns once the value is not `old`.
+  void wait_while(T old) {
+    for (int i = 0; i < kLooks; ++i) {
+      if (value.load() != old) return;
+      std::this_thread::yield();
+    }
+    std::unique_lock lock(mutex);
+    sleepers.fetch_add(1);
+    changed.wait(lock, [&] { return value.load() != old; });
+    sleepers.fetch_sub(1);
   }
-  value.wait(old);
-}
+  /// Behind a change of the value. Either it sees who is about to sleep, or who is about to sleep
+  /// sees the change: both look at the one after they have written the other.
+  void tell() {
+    if (sleepers.load() == 0) return;
+    { const std::lock_guard lock(mutex); }  // Whoever has looked already sleeps by now.
+    changed.notify_all();
+  }
+
+ private:
+  std::mutex mutex;
+  std::condition_variable changed;
+  std::atomic<int> sleepers{0};
+};
 
 /// The threads beside the calling one, and the job that all of them share.
 struct Workers::Threads {
@@ -49,9 +73,9 @@ struct Workers::Threads {
   void thread_main();
 
   std::vector<std::thread> threads;
-  std::atomic<std::uint32_t> generation{0};
+  Awaited<std::uint32_t> generation;
   std::atomic<int> next{0};
-  std::atomic<int> busy{0};
+  Awaited<int> busy;
   std::atomic<bool> stop{false};
   int size = 0;
   int grain = 1;
@@ -71,8 +95,8 @@ Workers::Threads::Threads(int count) {
 
 Workers::Threads::~Threads() {
   stop.store(true);
-  generation.fetch_add(1);
-  generation.notify_all();
+  generation.value.fetch_add(1);
+  generation.tell();
   for (std::thread& thread : threads) thread.join();
 }
 
@@ -83,12 +107,13 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
   pool.context = context;
   pool.call = call;
   pool.next.store(0);
-  pool.busy.store(static_cast<int>(pool.threads.size()));
-  pool.generation.fetch_add(1);
-  pool.generation.notify_all();
+  pool.busy.value.store(static_cast<int>(pool.threads.size()));
+  pool.generation.value.fetch_add(1);
+  pool.generation.tell();
   pool.run_chunks();
   // The job's fields may only be written again when every thread has left it.
-  for (int busy = pool.busy.load(); busy != 0; busy = pool.busy.load()) wait_while(pool.busy, busy);
+  for (int busy = pool.busy.value.load(); busy != 0; busy = pool.busy.value.load())
+    pool.busy.wait_while(busy);
 }
 
 void Workers::Threads::run_chunks() {
@@ -99,11 +124,11 @@ void Workers::Threads::run_chunks() {
 void Workers::Threads::thread_main() {
   // Generation 0 is the constructor's: a thread that starts late still sees the first job.
   for (std::uint32_t seen = 0;;) {
-    wait_while(generation, seen);
-    seen = generation.load();
+    generation.wait_while(seen);
+    seen = generation.value.load();
     if (stop.load()) return;
     run_chunks();
-    if (busy.fetch_sub(1) == 1) busy.notify_all();
+    if (busy.value.fetch_sub(1) == 1) busy.tell();
   }
 }
 
