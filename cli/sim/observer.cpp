@@ -104,11 +104,12 @@ void Observer::on_exact_state(std::uint64_t tick) {
 void Observer::on_frame(const protocol::InputFrame& frame) {
   const std::string name = "the frame of tick " + std::to_string(frame.tick);
   const protocol::LogTick* confirmed = ledger_->at(frame.tick, timeline_);
-  while ((confirmed == nullptr || !(confirmed->frame == frame)) && follows_branch(last_frame_)) {
+  const bool is_it = follow_until(last_frame_, [&] {
     confirmed = ledger_->at(frame.tick, timeline_);
-  }
+    return confirmed != nullptr && confirmed->frame == frame;
+  });
   if (confirmed == nullptr) return wrong(Invariant::kFrames, name + " is not confirmed");
-  if (!(confirmed->frame == frame)) {
+  if (!is_it) {
     return wrong(Invariant::kFrames, name + " is not the one that was confirmed");
   }
   const bool next = frame.tick == last_frame_ + 1;
@@ -125,9 +126,8 @@ std::uint64_t Observer::new_tick(const client::Follower& follower) {
   if (excused_ || progress.phase != client::Phase::kRunning) return 0;
   const std::uint64_t tick = progress.last_tick;
   if (tick == verified_tick_ || tick == 0) return 0;
-  while (ledger_->at(tick, timeline_) == nullptr && follows_branch(verified_tick_)) {
-  }
-  if (ledger_->at(tick, timeline_) != nullptr) return tick;
+  const auto is_there = [&] { return ledger_->at(tick, timeline_) != nullptr; };
+  if (follow_until(verified_tick_, is_there)) return tick;
   wrong(Invariant::kDigests, "is at tick " + std::to_string(tick) + ", which is not confirmed");
   return 0;
 }
@@ -136,11 +136,11 @@ void Observer::check_state(const client::Follower& follower) {
   const std::uint64_t tick = new_tick(follower);
   if (tick == 0 || follower.simulation().tick() != tick) return;
   const std::uint64_t digest = follower.simulation().digest();
-  while (digest != ledger_->at(tick, timeline_)->digest && follows_branch(verified_tick_) &&
-         ledger_->at(tick, timeline_) != nullptr) {
-  }
-  const protocol::LogTick* confirmed = ledger_->at(tick, timeline_);
-  if (confirmed == nullptr || digest != confirmed->digest) {
+  const bool is_it = follow_until(verified_tick_, [&] {
+    const protocol::LogTick* confirmed = ledger_->at(tick, timeline_);
+    return confirmed != nullptr && digest == confirmed->digest;
+  });
+  if (!is_it) {
     if (disturbed_) return;
     return wrong(Invariant::kDigests,
                  "its state of tick " + std::to_string(tick) + " is not the server's");
@@ -169,13 +169,16 @@ void Observer::check_shown(const client::Follower& follower, bool may_lag) {
     return wrong(Invariant::kDigests,
                  "shows " + std::to_string(shown.size()) + " bodies of " + std::to_string(bodies));
   }
-  for (const scenes::Pose& pose : shown) {
-    bool right = is_shown_right(pose, tick, may_lag);
-    while (!right && follows_branch(verified_tick_) && tick <= ledger_->ticks(timeline_)) {
-      right = is_shown_right(pose, tick, may_lag);
-    }
-    if (right) continue;
-    return wrong(Invariant::kDigests, "shows body " + std::to_string(pose.index) + " at tick " +
+  std::uint32_t misplaced = 0;
+  const auto is_right = [&](const scenes::Pose& pose) {
+    misplaced = pose.index;
+    return is_shown_right(pose, tick, may_lag);
+  };
+  const bool is_it = follow_until(verified_tick_, [&] {
+    return tick <= ledger_->ticks(timeline_) && std::ranges::all_of(shown, is_right);
+  });
+  if (!is_it) {
+    return wrong(Invariant::kDigests, "shows body " + std::to_string(misplaced) + " at tick " +
                                           std::to_string(tick) + " where it was not");
   }
   chronicle_->count(Event::kQuantisedShown);

@@ -48,6 +48,14 @@ class Observer {
   void on_exact_state(std::uint64_t tick);
   void check_delay(const protocol::ServerMessage& message);
   bool follows_branch(std::uint64_t seen_tick);
+  /// Goes on to later timelines, where it may, until `matches()`. @returns whether it does.
+  template <class Matches>
+  bool follow_until(std::uint64_t seen_tick, Matches&& matches) {
+    while (!matches()) {
+      if (!follows_branch(seen_tick)) return false;
+    }
+    return true;
+  }
   bool is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag) const;
   void verify(std::uint64_t tick);
   void wrong(Invariant invariant, const std::string& text) {
