@@ -44,6 +44,11 @@ struct ContactBlock {
   LaneIndices<W> contact;
   LaneBits moves_a;  ///< Lanes whose body a has mass.
   LaneBits moves_b;
+  LaneBits misses;   ///< Of islands (contact_rest.hpp): lanes that the warm start left in motion,
+  LaneBits stirs;    ///< not quite at rest,
+  LaneBits slides;   ///< sliding.
+  LaneBits left;     ///< Of islands: lanes that are in none that is solved, for the whole tick.
+  LaneBits settled;  ///< Of islands: lanes that biased sweeps pass by.
   std::uint32_t placed;       ///< Which poses the arms are of (StepScratch::poses); 0: of none.
   std::uint32_t point_count;  ///< The most points of any lane.
   bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
@@ -52,6 +57,7 @@ struct ContactBlock {
   bool bounces;               ///< Some lane restitutes.
   bool bounced;               ///< Some did in the last sweep of bounces.
   bool follows;               ///< Some lane is round.
+  bool touches;               ///< Some lane has a `touch` above 0.
   LaneMass<D, W> mass_a;
   LaneMass<D, W> mass_b;
   Vec<D, L> normal;
@@ -66,6 +72,7 @@ struct ContactBlock {
   L bias_rate;
   L mass_scale;
   L impulse_scale;
+  L touch;    ///< A gap below it counts as none, m: above 0 in islands alone.
   L turns_a;  ///< 1, or 0 where the point lies on a ball: it does not turn with the body.
   L turns_b;
   L is_round;               ///< 1 where both are balls about their centres of mass: follow_round.
@@ -140,6 +147,8 @@ template <int D, int W>
     const Lanes<W> gap = separation_of(block, point, a, b);
     point.arms = arms_of(block, point, a, b);
     point.gap = gap;
+    if (!block.touches) continue;
+    point.gap = select(gap < block.touch, min(gap, Lanes<W>(0.0f)), gap);
   }
 }
 

@@ -14,6 +14,13 @@ struct BlockRange {
   std::uint32_t poses;  ///< StepScratch::poses.
 };
 
+/// What a row may miss before more than sweeps is done about it, m/s.
+struct RestBounds {
+  float misses;   ///< Velocities, of an island that was at rest.
+  float stirs;    ///< Velocities, of one that was not.
+  float overlap;  ///< Of what overlaps, the speed that it is to be moved apart by.
+};
+
 /// What is done to contacts in lanes, compiled for each width: contact_kernels.cpp and
 /// contact_kernels_avx2.cpp, from one text (contact_sweeps.hpp). Units of other files only call.
 template <int D, int W>
@@ -32,6 +39,9 @@ struct ContactKernels {
   static void bounce(const StepContext<D>& context, const BlockRange<D, W>& range);
   /// v += M^-1 J^T lambda.
   static void warm_start(const BlockRange<D, W>& range);
+  /// What the warm start has left to do: ContactBlock::misses, stirs and slides.
+  static void look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
+                            const BlockRange<D, W>& range);
   /// One sweep of sequential impulses.
   static void sweep(const StepContext<D>& context, Sweep kind, const BlockRange<D, W>& range);
   /// One sweep on positions (correct_contact).

@@ -3,6 +3,7 @@
 #include "solver/constraints/contact_kernels.hpp"
 #include "solver/constraints/contact_lanes.hpp"
 #include "solver/constraints/contact_position.hpp"
+#include "solver/constraints/contact_rest.hpp"
 #include "solver/constraints/contact_round.hpp"
 #include "solver/constraints/restitution.hpp"
 
@@ -135,12 +136,39 @@ template <int D, int W>
   scatter_pair(range, block, a, b);
 }
 
+/// Blocks of which some lanes are settled.
+template <int D, int W>
+[[gnu::noinline]] void sweep_partly(const StepContext<D>& context, const BlockRange<D, W>& range,
+                                    ContactBlock<D, W>& block) {
+  MotionLanes<D, W> a;
+  MotionLanes<D, W> b;
+  gather_pair(range, block, a, b);
+  sweep_unsettled(context, block, a, b);
+  scatter(a, block.moves_a & ~block.settled, block.body_a, range.motions);
+  scatter(b, block.moves_b & ~block.settled, block.body_b, range.motions);
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
+                                         const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    MotionLanes<D, W> a;
+    MotionLanes<D, W> b;
+    gather_pair(range, *block, a, b);
+    find_rest(context, bounds, a, b, *block);
+  }
+}
+
 template <Sweep kSweep, int D, int W>
 void sweep_blocks(const StepContext<D>& context, const BlockRange<D, W>& range) {
   const ContactBlockRows together = context.tuning.contact_block;
   const bool apart = together == ContactBlockRows::kNone || together == ContactBlockRows::kIsland;
   const bool plain = kSweep != Sweep::kPseudo && apart;
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    if (kSweep == Sweep::kBiased && block->settled != 0) {
+      if (block->settled != kAllLanes<W>) sweep_partly(context, range, *block);
+      continue;
+    }
     if (plain && !block->rolls)
       sweep_plain<kSweep>(context, range, *block);
     else

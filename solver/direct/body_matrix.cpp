@@ -195,6 +195,22 @@ static void subtract_product(const SquareBlock<N>& a, const SquareBlock<N>& b, S
     }
 }
 
+/// The same of a product that is symmetric, of which only the lower triangle is read.
+template <int N>
+static void subtract_square(const SquareBlock<N>& a, const SquareBlock<N>& b, SquareBlock<N>& c) {
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j <= i; ++j) {
+      Wide sum = a.m[i][0] * b.m[j][0];
+      for (int k = 1; k < N; ++k) sum += a.m[i][k] * b.m[j][k];
+      c.m[i][j] -= sum;
+    }
+}
+template <int N>
+static void transpose(const SquareBlock<N>& from, SquareBlock<N>& to) {
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) to.m[i][j] = from.m[j][i];
+}
+
 template <int D>
 void BodyMatrix<D>::eliminate_numbers(const Step& step, const Step& next) {
   const Block& pivot = inverse_[static_cast<std::size_t>(step.node)];
@@ -205,13 +221,14 @@ void BodyMatrix<D>::eliminate_numbers(const Step& step, const Step& next) {
     const Entry& entry = entries_[static_cast<std::size_t>(step.entries) + i];
     Block& block = beside(entry.block);
     Block& whole = column_[i];
-    for (int r = 0; r < kFreedoms; ++r)
-      for (int c = 0; c < kFreedoms; ++c)
-        whole.m[r][c] = entry.transposed ? block.m[c][r] : block.m[r][c];
+    if (entry.transposed)
+      transpose(block, whole);
+    else
+      whole = block;
     multiply(whole, pivot, block);
     for (std::size_t j = 0; j < i; ++j)
       subtract_product(block, column_[j], beside(targets_[target++]));
-    subtract_product(block, whole, diagonal(entry.node));
+    subtract_square(block, whole, diagonal(entry.node));
   }
 }
 

@@ -44,6 +44,7 @@ class BodyMatrix {
 
   /// Sets the blocks of these steps to zero, to be summed up by `diagonal` and `beside`.
   void clear(Range steps);
+  /// Of which only the lower triangle is read.
   Block& diagonal(int node) { return diagonal_[static_cast<std::size_t>(node)]; }
   /// Rows are those of the higher node, columns those of the lower.
   Block& beside(int block) { return beside_[static_cast<std::size_t>(block)]; }

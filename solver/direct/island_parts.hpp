@@ -21,6 +21,33 @@ Vec<Dim<D>::kFreedoms, Wide> answer_to(const Vec<Dim<D>::kFreedoms, Wide>& momen
   return velocity;
 }
 
+/// Cdot of a row at these velocities by node.
+template <int D>
+[[gnu::always_inline]] inline Wide along(const IslandRows<D>& group, const IslandRow<D>& row,
+                                         std::span<const Vec<Dim<D>::kFreedoms, Wide>> velocity) {
+  Wide sum = 0.0;
+  if (group.node_a >= 0)
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i)
+      sum += row.a[i] * velocity[static_cast<std::size_t>(group.node_a)][i];
+  if (group.node_b >= 0)
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i)
+      sum += row.b[i] * velocity[static_cast<std::size_t>(group.node_b)][i];
+  return sum;
+}
+
+/// momentum += J^T impulse.
+template <int D>
+[[gnu::always_inline]] inline void push(const IslandRows<D>& group, const IslandRow<D>& row,
+                                        Wide impulse,
+                                        std::span<Vec<Dim<D>::kFreedoms, Wide>> momentum) {
+  if (group.node_a >= 0)
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i)
+      momentum[static_cast<std::size_t>(group.node_a)][i] += impulse * row.a[i];
+  if (group.node_b >= 0)
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i)
+      momentum[static_cast<std::size_t>(group.node_b)][i] += impulse * row.b[i];
+}
+
 /// Of the changed impulses, whose length friction bounds.
 template <int D>
 Wide square_of_tangents(const IslandRows<D>& group, const IslandRow<D>* row) {

@@ -13,37 +13,29 @@ static constexpr Wide kWholeStep = 0.999;
 
 /// Whether the tangents' natural impulses are within what the friction of the normal's holds.
 template <int D>
-static bool would_stick(float friction, const IslandRow<D>* normal) {
+static bool would_stick(Wide friction, const IslandRow<D>* normal) {
   Wide square = 0.0;
   for (int t = 1; t <= Dim<D>::kTangents; ++t) {
-    const Wide natural = normal[t].impulse - static_cast<Wide>(normal[t].mass) * normal[t].missing;
+    const Wide natural = normal[t].impulse - normal[t].mass * normal[t].missing;
     square += natural * natural;
   }
-  const Wide bound = static_cast<Wide>(friction) * normal->impulse;
+  const Wide bound = friction * normal->impulse;
   return square < bound * bound;
 }
 
-/// Whether no row misses more than the tolerance, as seen by the natural map.
 template <int D>
-bool IslandSolver<D>::rests(const Island& island, Wide tolerance) const {
+bool IslandSolver<D>::leaves_for_sweeps(const Island& island, Wide tolerance) const {
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    if (!group.is_contact) continue;
     const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    for (int r = 0; r < group.count; ++r) {
-      if (magnitude(row[r].overlap) > tolerance) return false;
-      Wide missing = magnitude(row[r].missing);
-      if (missing <= tolerance) continue;
-      if (!group.is_contact) return false;
-      const auto mass = static_cast<Wide>(row[r].mass);
-      if (r == 0) {
-        if (row[0].missing > 0.0) missing = std::min(missing, row[0].impulse / mass);
-      } else if (!would_stick<D>(group.friction, row)) {
-        continue;  // It slides, which sweeps do.
-      }
-      if (missing > tolerance) return false;
-    }
+    if (row[0].missing < -tolerance) return true;
+    if (row[0].impulse == 0.0) continue;
+    if (std::min(row[0].missing, row[0].impulse / row[0].mass) > tolerance) return true;
+    for (int t = 1; t < group.count; ++t)
+      if (magnitude(row[t].missing) > tolerance) return true;
   }
-  return true;
+  return false;
 }
 
 /// How much of the contacts' first guess is worth having, from 0 to 1: after a blow the impulses of
@@ -53,16 +45,19 @@ Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyM
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     momentum_[static_cast<std::size_t>(n)] = Vector::zero();
   Wide work_done = 0.0;
+  bool any = false;
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     if (!group.is_contact) continue;
     for (int r = group.first; r < group.first + group.count; ++r) {
       const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
       if (row.impulse == 0.0) continue;
-      push(group, row, row.impulse, momentum_);
+      any = true;
+      push<D>(group, row, row.impulse, momentum_);
       work_done += row.impulse * row.missing;
     }
   }
+  if (!any) return 1.0;
   Wide energy = 0.0;
   for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
     Vector& momentum = momentum_[static_cast<std::size_t>(n)];
@@ -89,7 +84,7 @@ void IslandSolver<D>::weaken_guess(const Island& island, Wide share) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     for (int r = group.first; r < group.first + group.count; ++r) {
       IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      row.missing += along(group, row, momentum_);
+      row.missing += along<D>(group, row, momentum_);
       if (group.is_contact) row.impulse = share * row.impulse;
     }
   }
@@ -105,8 +100,8 @@ void IslandSolver<D>::choose(const Island& island) {
       for (int r = 0; r < group.count; ++r) row[r].holds = true;
       continue;
     }
-    row[0].holds = row[0].impulse - static_cast<Wide>(row[0].mass) * row[0].missing > 0.0;
-    const bool rubs = row[0].holds && group.friction > 0.0f;
+    row[0].holds = row[0].impulse - row[0].mass * row[0].missing > 0.0;
+    const bool rubs = row[0].holds && group.friction > 0.0;
     // What has not pushed yet has no bound to compare with: it may well stick.
     const bool sticks = rubs && (row[0].impulse == 0.0 || would_stick<D>(group.friction, row));
     for (int t = 1; t < group.count; ++t) row[t].holds = sticks;
@@ -121,14 +116,14 @@ bool IslandSolver<D>::let_go(const Island& island) {
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    for (int r = 0; r < group.count; ++r)
-      row[r].change = row[r].holds ? -static_cast<Wide>(row[r].stiffness) *
-                                         (row[r].missing + along(group, row[r], solution_))
-                                   : 0.0;
+    for (int r = 0; r < group.count; ++r) {
+      row[r].answer = along<D>(group, row[r], solution_);
+      row[r].change = row[r].holds ? -row[r].stiffness * (row[r].missing + row[r].answer) : 0.0;
+    }
     if (!group.is_contact || !row[0].holds) continue;
     const Wide normal = row[0].impulse + row[0].change;
     const Wide square = square_of_tangents(group, row);
-    const Wide bound = kSlack * static_cast<Wide>(group.friction) * std::max(normal, 0.0);
+    const Wide bound = kSlack * group.friction * std::max(normal, 0.0);
     if (normal < 0.0) row[0].holds = false;
     const bool slides = group.count > 1 && row[1].holds && square > bound * bound;
     if (normal < 0.0 || slides)
@@ -140,18 +135,18 @@ bool IslandSolver<D>::let_go(const Island& island) {
 
 /// Speeds that take overlap away from positions and stay in no velocity; what holds stays together.
 template <int D>
-void IslandSolver<D>::correct_positions(const Island& island) {
-  bool any = false;
+void IslandSolver<D>::correct_positions(Island& island) {
+  island.corrects = false;
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     correction[static_cast<std::size_t>(n)] = Vector::zero();
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     const IslandRow<D>& row = rows[static_cast<std::size_t>(group.first)];
     if (!row.holds || row.overlap == 0.0) continue;
-    any = true;
-    push(group, row, -static_cast<Wide>(row.stiffness) * row.overlap, correction);
+    island.corrects = true;
+    push<D>(group, row, -row.stiffness * row.overlap, correction);
   }
-  if (any) matrix.solve(island.steps, correction);
+  if (island.corrects) matrix.solve(island.steps, correction);
 }
 
 /// The most that any row of a joint misses, m/s or rad/s.
@@ -181,27 +176,23 @@ void IslandSolver<D>::forget_conflict(const Island& island) {
 }
 
 template <int D>
-Solved IslandSolver<D>::solve(const Island& island, std::span<const BodyMass<D>> masses,
-                              std::span<const Motion<D>> motions, Wide tolerance) {
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masses,
+                              std::span<const Motion<D>> motions) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     change[static_cast<std::size_t>(n)] = Vector::zero();
-    correction[static_cast<std::size_t>(n)] = Vector::zero();
-  }
-  if (island.groups.begin == island.groups.end || rests(island, tolerance)) {
-    ++work.rests;
-    return Solved::kAlready;
-  }
   solution_.resize(body_of.size());
   momentum_.resize(body_of.size());
   if (const Wide share = worth_of_guess(island, masses); share < 1.0) weaken_guess(island, share);
   Wide step = 0.0;
   for (int round = 0; round < kRounds && step < kWholeStep; ++round) {
+    if (round > 0 && island.products_left <= 0) break;
     choose(island);
     for (int pass = 0; pass <= kPasses; ++pass) {
       assemble(island, masses, motions);
       matrix.factor(island.steps);
       matrix.solve(island.steps, solution_);
       ++work.factors;
+      island.products_left -= island.products;
       work.products += static_cast<std::uint64_t>(island.products);
       if (!let_go(island) || pass == kPasses) break;
     }
@@ -212,9 +203,11 @@ Solved IslandSolver<D>::solve(const Island& island, std::span<const BodyMass<D>>
   return step < kWholeStep ? Solved::kPartly : Solved::kWhole;
 }
 
-template Solved IslandSolver<2>::solve(const Island&, std::span<const BodyMass<2>>,
-                                       std::span<const Motion<2>>, Wide);
-template Solved IslandSolver<3>::solve(const Island&, std::span<const BodyMass<3>>,
-                                       std::span<const Motion<3>>, Wide);
+template bool IslandSolver<2>::leaves_for_sweeps(const Island&, Wide) const;
+template bool IslandSolver<3>::leaves_for_sweeps(const Island&, Wide) const;
+template Solved IslandSolver<2>::solve(Island&, std::span<const BodyMass<2>>,
+                                       std::span<const Motion<2>>);
+template Solved IslandSolver<3>::solve(Island&, std::span<const BodyMass<3>>,
+                                       std::span<const Motion<3>>);
 
 }  // namespace cycloid::solver

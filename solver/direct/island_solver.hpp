@@ -9,15 +9,16 @@ namespace cycloid::solver {
 template <int D>
 struct IslandRow {
   static constexpr int kFreedoms = Dim<D>::kFreedoms;
-  float a[kFreedoms];  ///< Linear, then angular; 0 where the node is -1 or cannot turn.
-  float b[kFreedoms];
-  Wide missing;     ///< Cdot plus the bias: what the row wants gone, m/s or rad/s.
-  Wide impulse;     ///< Accumulated, N s or N m s.
-  Wide change;      ///< Of the impulse, by the solve under way.
-  Wide overlap;     ///< Speed at which the position is to be corrected, m/s: below 0 apart.
-  float mass;       ///< Of the row alone, as the sweeps use it.
-  float stiffness;  ///< Momentum per speed that it holds with: the island's, or its inertia.
-  bool holds;       ///< It is an equality of the present solve.
+  Wide a[kFreedoms];  ///< Linear, then angular; 0 where the node is -1 or cannot turn.
+  Wide b[kFreedoms];
+  Wide missing;    ///< Cdot plus the bias: what the row wants gone, m/s or rad/s.
+  Wide impulse;    ///< Accumulated, N s or N m s.
+  Wide change;     ///< Of the impulse, by the solve under way.
+  Wide answer;     ///< Of Cdot, by the same.
+  Wide overlap;    ///< Speed at which the position is to be corrected, m/s: below 0 apart.
+  Wide mass;       ///< Of the row alone, as the sweeps use it.
+  Wide stiffness;  ///< Momentum per speed that it holds with: the island's, or its inertia.
+  bool holds;      ///< It is an equality of the present solve.
 };
 
 /// Rows that are bounded together: of a contact point its normal, then its tangents, whose length
@@ -30,7 +31,9 @@ struct IslandRows {
   int first;
   int count;
   bool is_contact;
-  float friction;
+  Wide friction;
+  Vec<D, Wide> arm_a;  ///< Of a contact's point from the node; 0 where it cannot turn.
+  Vec<D, Wide> arm_b;
 };
 
 /// Torque by which the force of a joint answers to a turn of a body, as an impulse: what makes it
@@ -46,12 +49,11 @@ struct IslandTension {
 struct IslandWork {
   std::uint64_t factors = 0;
   std::uint64_t products = 0;  ///< Of blocks, in those.
-  std::uint64_t rests = 0;     ///< Islands that the warm start had solved already.
+  std::uint64_t rests = 0;     ///< Islands that the warm start had brought to rest.
 };
 
 /// What came of an island's solve.
 enum class Solved {
-  kAlready,  ///< By the warm start.
   kWhole,
   kPartly,  ///< What was guessed to hold does not; sweeps have the rest to do.
 };
@@ -81,10 +83,14 @@ class IslandSolver {
     Range steps;
     Range groups;
     Range tensions;
-    int products;   ///< Of blocks, that factoring takes.
-    int pairs;      ///< Contacts and joints.
-    float mass;     ///< Of the heaviest body, kg.
-    float inertia;  ///< The greatest, kg m^2.
+    int products;                ///< Of blocks, that factoring takes.
+    std::int64_t products_left;  ///< In this tick, before it is left to the sweeps.
+    int pairs;                   ///< Contacts and joints.
+    float mass;                  ///< Of the heaviest body, kg.
+    float inertia;               ///< The greatest, kg m^2.
+    bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
+    bool stirred;   ///< The substep before had to solve it.
+    bool corrects;  ///< `correction` of its nodes is not 0.
   };
 
   /// Where the rows of a group come from.
@@ -121,28 +127,26 @@ class IslandSolver {
 
   /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and
   /// `correction`.
-  /// @param tolerance  m/s or rad/s that a row may miss before anything is done.
-  Solved solve(const Island& island, std::span<const BodyMass<D>> masses,
-               std::span<const Motion<D>> motions, Wide tolerance);
+  Solved solve(Island& island, std::span<const BodyMass<D>> masses,
+               std::span<const Motion<D>> motions);
+  /// Whether a contact of a solved island still approaches, pulls or slides by more than this, m/s.
+  bool leaves_for_sweeps(const Island& island, Wide tolerance) const;
 
  private:
-  bool rests(const Island& island, Wide tolerance) const;
   Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);
   void weaken_guess(const Island& island, Wide share);
   void choose(const Island& island);
   bool let_go(const Island& island);
   void assemble(const Island& island, std::span<const BodyMass<D>> masses,
                 std::span<const Motion<D>> motions);
+  void assemble_point(const IslandRows<D>& group, Wide stiffness);
+  void assemble_row(const IslandRows<D>& group, const IslandRow<D>& row);
   bool hold_to_bounds(const Island& island, std::span<const BodyMass<D>> masses);
   Wide best_step(const Island& island) const;
   Wide take(const Island& island, std::span<const BodyMass<D>> masses);
-  void correct_positions(const Island& island);
+  void correct_positions(Island& island);
   Wide most_missing(const Island& island) const;
   void forget_conflict(const Island& island);
-  Wide along(const IslandRows<D>& group, const IslandRow<D>& row,
-             std::span<const Vector> velocity) const;
-  void push(const IslandRows<D>& group, const IslandRow<D>& row, Wide impulse,
-            std::span<Vector> momentum) const;
 
   std::vector<Vector> solution_;  ///< By node.
   std::vector<Vector> momentum_;

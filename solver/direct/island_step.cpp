@@ -4,30 +4,6 @@
 
 namespace cycloid::solver {
 
-template <int D>
-Wide IslandSolver<D>::along(const IslandRows<D>& group, const IslandRow<D>& row,
-                            std::span<const Vector> velocity) const {
-  Wide sum = 0.0;
-  if (group.node_a >= 0)
-    for (int i = 0; i < kFreedoms; ++i)
-      sum += static_cast<Wide>(row.a[i]) * velocity[static_cast<std::size_t>(group.node_a)][i];
-  if (group.node_b >= 0)
-    for (int i = 0; i < kFreedoms; ++i)
-      sum += static_cast<Wide>(row.b[i]) * velocity[static_cast<std::size_t>(group.node_b)][i];
-  return sum;
-}
-
-template <int D>
-void IslandSolver<D>::push(const IslandRows<D>& group, const IslandRow<D>& row, Wide impulse,
-                           std::span<Vector> momentum) const {
-  if (group.node_a >= 0)
-    for (int i = 0; i < kFreedoms; ++i)
-      momentum[static_cast<std::size_t>(group.node_a)][i] += impulse * static_cast<Wide>(row.a[i]);
-  if (group.node_b >= 0)
-    for (int i = 0; i < kFreedoms; ++i)
-      momentum[static_cast<std::size_t>(group.node_b)][i] += impulse * static_cast<Wide>(row.b[i]);
-}
-
 /// Mass of one freedom or pair of freedoms; where there is no inertia, 1 on the diagonal.
 template <int D>
 static void set_mass(const BodyMass<D>& mass, SquareBlock<Dim<D>::kFreedoms>& block) {
@@ -56,10 +32,48 @@ static void set_mass(const BodyMass<D>& mass, SquareBlock<Dim<D>::kFreedoms>& bl
 
 /// block += scale p q^T.
 template <int N>
-static void add_outer(Wide scale, const float (&p)[N], const float (&q)[N], SquareBlock<N>& block) {
+static void add_outer(Wide scale, const Wide (&p)[N], const Wide (&q)[N], SquareBlock<N>& block) {
   for (int i = 0; i < N; ++i) {
-    const Wide scaled = scale * static_cast<Wide>(p[i]);
-    for (int j = 0; j < N; ++j) block.m[i][j] += scaled * static_cast<Wide>(q[j]);
+    const Wide scaled = scale * p[i];
+    for (int j = 0; j < N; ++j) block.m[i][j] += scaled * q[j];
+  }
+}
+/// block += scale p p^T, of which only the lower triangle is read.
+template <int N>
+static void add_square(Wide scale, const Wide (&p)[N], SquareBlock<N>& block) {
+  for (int i = 0; i < N; ++i) {
+    const Wide scaled = scale * p[i];
+    for (int j = 0; j <= i; ++j) block.m[i][j] += scaled * p[j];
+  }
+}
+
+/// Columns of the matrix [r]x: r x v = [r]x v. In the plane r x v is a number.
+static Wide cross_column(const Vec<2, Wide>& r, int, int j) {
+  return j == 0 ? -r[1] : r[0];
+}
+static Wide cross_column(const Vec<3, Wide>& r, int i, int j) {
+  constexpr int kOther[3][3] = {{-1, 2, 1}, {2, -1, 0}, {1, 0, -1}};
+  if (i == j) return 0.0;
+  const Wide entry = r[kOther[i][j]];
+  return (j - i + 3) % 3 == 1 ? -entry : entry;
+}
+
+/// block += scale P^T Q of what a point does in all directions: P = (I, -[p]x), Q = (I, -[q]x).
+/// The directions of a point that sticks are orthonormal, so their squares add up to this.
+template <int D>
+static void add_point(Wide scale, const Vec<D, Wide>& p, const Vec<D, Wide>& q,
+                      SquareBlock<Dim<D>::kFreedoms>& block) {
+  constexpr int kSpin = Dim<D>::kSpin;
+  const Wide product = scale * dot(p, q);
+  for (int i = 0; i < D; ++i) block.m[i][i] += scale;
+  for (int i = 0; i < kSpin; ++i) {
+    for (int j = 0; j < D; ++j) {
+      block.m[D + i][j] += scale * cross_column(p, i, j);
+      block.m[j][D + i] += scale * cross_column(q, i, j);
+    }
+    block.m[D + i][D + i] += product;
+    if constexpr (kSpin == 3)
+      for (int j = 0; j < kSpin; ++j) block.m[D + i][D + j] -= scale * q[i] * p[j];
   }
 }
 
@@ -94,20 +108,42 @@ void IslandSolver<D>::assemble(const Island& island, std::span<const BodyMass<D>
   }
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      if (!row.holds) continue;
-      const auto stiffness = static_cast<Wide>(row.stiffness);
-      push(group, row, -stiffness * row.missing, solution_);
-      if (group.node_a >= 0) add_outer(stiffness, row.a, row.a, matrix.diagonal(group.node_a));
-      if (group.node_b >= 0) add_outer(stiffness, row.b, row.b, matrix.diagonal(group.node_b));
-      if (group.pair < 0) continue;
-      if (group.node_a > group.node_b)
-        add_outer(stiffness, row.a, row.b, matrix.beside(group.pair));
-      else
-        add_outer(stiffness, row.b, row.a, matrix.beside(group.pair));
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for (int r = 0; r < group.count; ++r)
+      if (row[r].holds) push<D>(group, row[r], -row[r].stiffness * row[r].missing, solution_);
+    if (group.is_contact && group.count > 1 && row[1].holds) {
+      assemble_point(group, row[0].stiffness);
+      continue;
     }
+    for (int r = 0; r < group.count; ++r)
+      if (row[r].holds) assemble_row(group, row[r]);
   }
+}
+
+/// Adds J^T W J of a contact point that sticks: all its rows at once.
+template <int D>
+void IslandSolver<D>::assemble_point(const IslandRows<D>& group, Wide stiffness) {
+  const int a = group.node_a;
+  const int b = group.node_b;
+  if (a >= 0) add_point<D>(stiffness, group.arm_a, group.arm_a, matrix.diagonal(a));
+  if (b >= 0) add_point<D>(stiffness, group.arm_b, group.arm_b, matrix.diagonal(b));
+  if (group.pair < 0) return;
+  if (a > b)
+    add_point<D>(-stiffness, group.arm_a, group.arm_b, matrix.beside(group.pair));
+  else
+    add_point<D>(-stiffness, group.arm_b, group.arm_a, matrix.beside(group.pair));
+}
+
+/// Adds J^T W J of one row.
+template <int D>
+void IslandSolver<D>::assemble_row(const IslandRows<D>& group, const IslandRow<D>& row) {
+  if (group.node_a >= 0) add_square(row.stiffness, row.a, matrix.diagonal(group.node_a));
+  if (group.node_b >= 0) add_square(row.stiffness, row.b, matrix.diagonal(group.node_b));
+  if (group.pair < 0) return;
+  if (group.node_a > group.node_b)
+    add_outer(row.stiffness, row.a, row.b, matrix.beside(group.pair));
+  else
+    add_outer(row.stiffness, row.b, row.a, matrix.beside(group.pair));
 }
 
 /// Holds the new impulses to their bounds. @returns whether any was outside; then the solution is
@@ -122,7 +158,7 @@ bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyM
     IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
     if (!group.is_contact) continue;
     const Wide normal = std::max(row[0].impulse + row[0].change, 0.0);
-    const Wide bound = static_cast<Wide>(group.friction) * normal;
+    const Wide bound = group.friction * normal;
     const Wide square = square_of_tangents(group, row);
     Wide scale = 1.0;
     if (square > bound * bound) {
@@ -135,15 +171,21 @@ bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyM
       if (more == 0.0) continue;
       bounded = true;
       row[r].change += more;
-      push(group, row[r], more, momentum_);
+      push<D>(group, row[r], more, momentum_);
     }
   }
-  for (int n = island.nodes.begin; bounded && n < island.nodes.end; ++n) {
+  if (!bounded) return false;
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
     const auto node = static_cast<std::size_t>(n);
     const Vector more = answer_to<D>(momentum_[node], masses[body_of[node]]);
     for (int i = 0; i < kFreedoms; ++i) solution_[node][i] += more[i];
   }
-  return bounded;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for (int r = 0; r < group.count; ++r) row[r].answer = along<D>(group, row[r], solution_);
+  }
+  return true;
 }
 
 /// How far along the changes the work that is left is least: from 0 to 1.
@@ -157,7 +199,7 @@ Wide IslandSolver<D>::best_step(const Island& island) const {
       const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
       if (row.change == 0.0) continue;
       slope += row.change * row.missing;
-      curve += row.change * along(group, row, solution_);
+      curve += row.change * row.answer;
     }
   }
   if (!(slope < 0.0)) return 0.0;
@@ -177,23 +219,15 @@ Wide IslandSolver<D>::take(const Island& island, std::span<const BodyMass<D>> ma
     for (int r = group.first; r < group.first + group.count; ++r) {
       IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
       row.impulse += step * row.change;
-      row.missing += step * along(group, row, solution_);
+      row.missing += step * row.answer;
     }
   }
   return step;
 }
 
-template Wide IslandSolver<2>::along(const IslandRows<2>&, const IslandRow<2>&,
-                                     std::span<const Vector>) const;
-template void IslandSolver<2>::push(const IslandRows<2>&, const IslandRow<2>&, Wide,
-                                    std::span<Vector>) const;
 template void IslandSolver<2>::assemble(const Island&, std::span<const BodyMass<2>>,
                                         std::span<const Motion<2>>);
 template Wide IslandSolver<2>::take(const Island&, std::span<const BodyMass<2>>);
-template Wide IslandSolver<3>::along(const IslandRows<3>&, const IslandRow<3>&,
-                                     std::span<const Vector>) const;
-template void IslandSolver<3>::push(const IslandRows<3>&, const IslandRow<3>&, Wide,
-                                    std::span<Vector>) const;
 template void IslandSolver<3>::assemble(const Island&, std::span<const BodyMass<3>>,
                                         std::span<const Motion<3>>);
 template Wide IslandSolver<3>::take(const Island&, std::span<const BodyMass<3>>);

@@ -4,8 +4,17 @@
 
 namespace cycloid::solver {
 
-/// Block products per pair of bodies that an island may take to factor: beyond, sweeps cost less.
-static constexpr int kProductsPerPair = 16;
+/// Block products per pair of bodies that an island may take to factor once: beyond, as a net of
+/// 100 x 100 pins is, it is left to the sweeps.
+static constexpr int kProductsPerPair = 128;
+/// The same, of all that it is factored in a tick: then it is left to the sweeps until the next. So
+/// what is large may be solved when it is disturbed, and not in all rounds of every substep.
+static constexpr int kProductsPerPairAndTick = 960;
+
+/// Over the slop, the gap that counts as none. Without it every solve closes gaps of a rounding of
+/// the positions, a millimetre per second of noise in each row of a stack, and the next one has to
+/// stop what that set going: the pyramids under heavy apexes then cost seven times as much.
+static constexpr float kTouch = 0.1f;
 
 /// A contact or a rigid joint between the bodies of two slots.
 struct HeldPair {
@@ -151,6 +160,7 @@ static void follow_plans(IslandSolver<D>& solver) {
     auto& island = solver.islands[i];
     island.steps = solver.plans[i].steps;
     island.products = solver.plans[i].products;
+    island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
     for (int n = island.nodes.begin; n < island.nodes.end && !solver.plans[i].taken; ++n)
       solver.island_of[solver.body_of[static_cast<std::size_t>(n)]] = -1;
   }
@@ -189,15 +199,55 @@ static void list_groups(StepScratch<D>& scratch) {
     const int b = solver.node_of[pair.b];
     for (int point = 0; point < pair.points; ++point) {
       const auto group = static_cast<std::size_t>(island.groups.end++);
-      solver.groups[group] = {a, b, beside, 0, 0, pair.lane >= 0, 0.0f};
+      solver.groups[group] = {a, b, beside, 0, 0, pair.lane >= 0, 0.0, {}, {}};
       solver.sources[group] = {pair.place, pair.lane, point};
     }
   });
 }
 
-/// Gives the groups their rows, contacts their friction, and takes both from the soft sweeps.
+/// Whether a joint has rows that only sweeps solve.
+template <int D>
+static bool is_swept(const JointRow<D>& row) {
+  return !holds(row) || row.spring_enabled || row.motor_enabled || row.limit_enabled ||
+         has_cone(row);
+}
+
+/// Whether a contact has: it bounces, or resists rolling.
 template <int D, int W>
-static void take_rows(StepScratch<D>& scratch) {
+static bool is_swept(const ContactBlock<D, W>& block, int lane) {
+  return block.restitution.raw[lane] > 0.0f || block.rolling.raw[lane] > 0.0f ||
+         block.twist.raw[lane] > 0.0f;
+}
+
+/// Finds the islands that sweeps act on in any case, and the lanes of no island.
+template <int D, int W>
+static void find_swept(StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  const auto sweep = [&](std::uint32_t slot) {
+    if (solver.node_of[slot] >= 0 && solver.island_of[slot] >= 0)
+      solver.islands[static_cast<std::size_t>(solver.island_of[slot])].swept = true;
+  };
+  for (const JointRow<D>& row : scratch.joint_rows) {
+    if (!is_swept(row)) continue;
+    sweep(row.body_a);
+    sweep(row.body_b);
+  }
+  for_each_pair<D, W>(scratch, [&](const HeldPair& pair) {
+    if (pair.lane < 0) return;
+    auto& block = blocks[static_cast<std::size_t>(pair.place)];
+    const int at = island_of(solver, pair);
+    if (at < 0)
+      block.left |= LaneBits{1} << pair.lane;
+    else if (is_swept(block, pair.lane))
+      solver.islands[static_cast<std::size_t>(at)].swept = true;
+  });
+}
+
+/// Gives the groups their rows, contacts their friction, and takes both from the soft sweeps. What
+/// bounces has to come all the way.
+template <int D, int W>
+static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   int rows = 0;
@@ -213,9 +263,13 @@ static void take_rows(StepScratch<D>& scratch) {
       continue;
     }
     ContactBlock<D, W>& block = blocks[place];
-    group.friction = block.friction.raw[source.lane];
-    group.count = group.friction > 0.0f ? 1 + Dim<D>::kTangents : 1;
+    group.friction = static_cast<Wide>(block.friction.raw[source.lane]);
+    group.count = group.friction > 0.0 ? 1 + Dim<D>::kTangents : 1;
     rows += group.count;
+    if (!(block.restitution.raw[source.lane] > 0.0f)) {
+      block.touch.raw[source.lane] = kTouch * context.tuning.slop;
+      block.touches = true;
+    }
     block.bias_rate.raw[source.lane] = 0.0f;
     block.mass_scale.raw[source.lane] = 1.0f;
     block.impulse_scale.raw[source.lane] = 0.0f;
@@ -237,7 +291,8 @@ void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   if (!list_pairs<D, W>(scratch)) plan_islands(scratch.islands_solved);
   follow_plans(scratch.islands_solved);
   list_groups<D, W>(scratch);
-  take_rows<D, W>(scratch);
+  find_swept<D, W>(scratch);
+  take_rows<D, W>(context, scratch);
   scratch.islands_solved.work = {};
 }
 

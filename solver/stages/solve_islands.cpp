@@ -6,19 +6,19 @@ namespace cycloid::solver {
 /// Stiffness of a row over the greatest mass of its island: what a load leaves of its impulse to
 /// the next substep is a thousandth.
 static constexpr float kStiffness = 1.0e3f;
-/// What a row may miss, m/s or rad/s, before more than sweeps is done about it.
-static constexpr Wide kTolerance = 1.0e-3;
+/// What an island may miss before it is solved. The impulses of a solve have stopped what moved;
+/// as the next warm start they would set it going the other way, so what was just solved is held to
+/// fifty times less. Overlap may be left half a millimetre beyond the slop.
+static constexpr RestBounds kRest{1.0e-3f, 2.0e-5f, 1.0e-2f};
 /// Tension over inertia, in one substep, that the explicit step is left: so what spins slower than
 /// a third of a radian per substep keeps its angular momentum.
 static constexpr float kExplicit = 0.1f;
 
 template <int D>
-static Wide speed_of(const float (&row)[Dim<D>::kFreedoms], const Motion<D>& motion) {
+static Wide speed_of(const Wide (&row)[Dim<D>::kFreedoms], const Motion<D>& motion) {
   Wide speed = 0.0;
-  for (int i = 0; i < D; ++i)
-    speed += static_cast<Wide>(row[i]) * static_cast<Wide>(motion.velocity[i]);
-  for (int i = 0; i < Dim<D>::kSpin; ++i)
-    speed += static_cast<Wide>(row[D + i]) * static_cast<Wide>(motion.spin[i]);
+  for (int i = 0; i < D; ++i) speed += row[i] * static_cast<Wide>(motion.velocity[i]);
+  for (int i = 0; i < Dim<D>::kSpin; ++i) speed += row[D + i] * static_cast<Wide>(motion.spin[i]);
   return speed;
 }
 
@@ -29,53 +29,44 @@ static Vec<N> lane_of(const Vec<N, L>& lanes, int lane) {
   return one;
 }
 
-/// One direction of a contact point.
-template <int D>
-struct PointDirection {
-  Vec<D> direction;
-  Vec<D> r_a;
-  Vec<D> r_b;
-};
-template <int D>
-static void set_row(const PointDirection<D>& at, const BodyMass<D>& mass_a,
-                    const BodyMass<D>& mass_b, IslandRow<D>& row) {
-  const Spin<D> turn_a = moment(at.r_a, at.direction);
-  const Spin<D> turn_b = moment(at.r_b, at.direction);
-  const bool a_turns = can_turn<D>(mass_a);
-  const bool b_turns = can_turn<D>(mass_b);
-  for (int i = 0; i < D; ++i) {
-    row.a[i] = -at.direction[i];
-    row.b[i] = at.direction[i];
-  }
-  for (int i = 0; i < Dim<D>::kSpin; ++i) {
-    row.a[D + i] = a_turns ? -turn_a[i] : 0.0f;
-    row.b[D + i] = b_turns ? turn_b[i] : 0.0f;
-  }
-}
-
+/// The rows of a contact point, of which the first `count` are wanted: its normal, its tangents.
 /// @pre the block's arms are of the present poses.
 template <int D, int W>
 static void gather_point(const StepContext<D>& context, const StepScratch<D>& scratch,
                          const ContactBlock<D, W>& block,
-                         const typename IslandSolver<D>::Source& source, float stiffness,
-                         IslandRow<D>* row) {
+                         const typename IslandSolver<D>::Source& source, Wide stiffness,
+                         IslandRows<D>& group, IslandRow<D>* row) {
   const auto& point = block.points[source.point];
   const int lane = source.lane;
-  const std::uint32_t a = block.body_a[lane];
-  const std::uint32_t b = block.body_b[lane];
-  PointDirection<D> at{lane_of(block.normal, lane), lane_of(point.arms.r_a, lane),
-                       lane_of(point.arms.r_b, lane)};
-  const int count = block.friction.raw[lane] > 0.0f ? 1 + Dim<D>::kTangents : 1;
-  for (int r = 0; r < count; ++r) {
-    if (r > 0) at.direction = lane_of(block.tangent[r - 1], lane);
-    set_row(at, scratch.masses[a], scratch.masses[b], row[r]);
-    row[r].missing =
-        speed_of<D>(row[r].a, scratch.motions[a]) + speed_of<D>(row[r].b, scratch.motions[b]);
+  const Motion<D>& motion_a = scratch.motions[block.body_a[lane]];
+  const Motion<D>& motion_b = scratch.motions[block.body_b[lane]];
+  const bool a_turns = can_turn<D>(scratch.masses[block.body_a[lane]]);
+  const bool b_turns = can_turn<D>(scratch.masses[block.body_b[lane]]);
+  const Vec<D> r_a = lane_of(point.arms.r_a, lane);
+  const Vec<D> r_b = lane_of(point.arms.r_b, lane);
+  for (int i = 0; i < D; ++i) {
+    group.arm_a[i] = static_cast<Wide>(a_turns ? r_a[i] : 0.0f);
+    group.arm_b[i] = static_cast<Wide>(b_turns ? r_b[i] : 0.0f);
+  }
+  for (int r = 0; r < group.count; ++r) {
+    const Vec<D> direction = lane_of(r == 0 ? block.normal : block.tangent[r - 1], lane);
+    const Spin<D> turn_a = moment(r_a, direction);
+    const Spin<D> turn_b = moment(r_b, direction);
+    for (int i = 0; i < D; ++i) {
+      row[r].b[i] = static_cast<Wide>(direction[i]);
+      row[r].a[i] = -row[r].b[i];
+    }
+    for (int i = 0; i < Dim<D>::kSpin; ++i) {
+      row[r].a[D + i] = static_cast<Wide>(a_turns ? -turn_a[i] : 0.0f);
+      row[r].b[D + i] = static_cast<Wide>(b_turns ? turn_b[i] : 0.0f);
+    }
+    row[r].missing = speed_of<D>(row[r].a, motion_a) + speed_of<D>(row[r].b, motion_b);
     row[r].overlap = 0.0;
     row[r].stiffness = stiffness;
     row[r].impulse = static_cast<Wide>(r == 0 ? point.normal_impulse.raw[lane]
                                               : point.tangent_impulse[r - 1].raw[lane]);
-    row[r].mass = r == 0 ? point.normal_mass.raw[lane] : point.tangent_mass[r - 1].raw[lane];
+    row[r].mass = static_cast<Wide>(r == 0 ? point.normal_mass.raw[lane]
+                                           : point.tangent_mass[r - 1].raw[lane]);
   }
   const float gap = point.gap.raw[lane];
   if (gap > 0.0f) {
@@ -96,23 +87,23 @@ static void gather_joint(const StepContext<D>& context, const StepScratch<D>& sc
     const Row<D>& from = joint.rows.rows[static_cast<std::size_t>(r)];
     bool moves = false;
     for (int i = 0; i < D; ++i) {
-      row[r].a[i] = from.linear_a[i];
-      row[r].b[i] = from.linear_b[i];
+      row[r].a[i] = static_cast<Wide>(from.linear_a[i]);
+      row[r].b[i] = static_cast<Wide>(from.linear_b[i]);
       moves = moves || from.linear_a[i] != 0.0f || from.linear_b[i] != 0.0f;
     }
     const bool a_turns = can_turn<D>(scratch.masses[joint.body_a]);
     const bool b_turns = can_turn<D>(scratch.masses[joint.body_b]);
     for (int i = 0; i < Dim<D>::kSpin; ++i) {
-      row[r].a[D + i] = a_turns ? from.angular_a[i] : 0.0f;
-      row[r].b[D + i] = b_turns ? from.angular_b[i] : 0.0f;
+      row[r].a[D + i] = static_cast<Wide>(a_turns ? from.angular_a[i] : 0.0f);
+      row[r].b[D + i] = static_cast<Wide>(b_turns ? from.angular_b[i] : 0.0f);
     }
     row[r].missing = static_cast<Wide>(
         row_speed(from, scratch.motions[joint.body_a], scratch.motions[joint.body_b]) +
         context.joint.bias_rate * from.error);
     row[r].overlap = 0.0;
     row[r].impulse = static_cast<Wide>(joint.impulse[r]);
-    row[r].mass = 1.0f;
-    row[r].stiffness = kStiffness * (moves ? island.mass : island.inertia);
+    row[r].mass = 1.0;
+    row[r].stiffness = static_cast<Wide>(kStiffness * (moves ? island.mass : island.inertia));
   }
 }
 
@@ -155,7 +146,7 @@ static void gather_island(const StepContext<D>& context, StepScratch<D>& scratch
                           typename IslandSolver<D>::Island& island) {
   IslandSolver<D>& solver = scratch.islands_solved;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const float stiffness = kStiffness * island.mass;
+  const auto stiffness = static_cast<Wide>(kStiffness * island.mass);
   island.tensions = {static_cast<int>(solver.tensions.size()),
                      static_cast<int>(solver.tensions.size())};
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
@@ -164,7 +155,7 @@ static void gather_island(const StepContext<D>& context, StepScratch<D>& scratch
     IslandRow<D>* row = &solver.rows[static_cast<std::size_t>(group.first)];
     const auto place = static_cast<std::size_t>(source.place);
     if (group.is_contact) {
-      gather_point<D, W>(context, scratch, blocks[place], source, stiffness, row);
+      gather_point<D, W>(context, scratch, blocks[place], source, stiffness, group, row);
       continue;
     }
     const JointRow<D>& joint = scratch.joint_rows[place];
@@ -206,25 +197,99 @@ static void scatter_island(StepScratch<D>& scratch,
   }
 }
 
-/// Solves the islands that are small enough at once, from where the warm start has led.
+/// Whether a rigid row of a joint misses more than the bound, m/s or rad/s.
+template <int D>
+static bool misses(const StepContext<D>& context, const StepScratch<D>& scratch,
+                   const JointRow<D>& joint, float bound) {
+  const Motion<D>& a = scratch.motions[joint.body_a];
+  const Motion<D>& b = scratch.motions[joint.body_b];
+  for (int r = 0; r < joint.rows.count; ++r) {
+    const Row<D>& row = joint.rows.rows[static_cast<std::size_t>(r)];
+    if (abs(row_speed(row, a, b) + context.joint.bias_rate * row.error) > bound) return true;
+  }
+  return false;
+}
+
+/// What the warm start has left of an island. @pre look_for_rest.
+struct Remainder {
+  bool misses;
+  bool slides;
+};
+template <int D, int W>
+static Remainder remainder_of(const StepContext<D>& context, const StepScratch<D>& scratch,
+                              const typename IslandSolver<D>::Island& island) {
+  const IslandSolver<D>& solver = scratch.islands_solved;
+  const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  const float bound = island.stirred ? kRest.stirs : kRest.misses;
+  Remainder left{};
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const auto& source = solver.sources[static_cast<std::size_t>(g)];
+    const auto place = static_cast<std::size_t>(source.place);
+    if (source.lane < 0) {
+      left.misses = misses(context, scratch, scratch.joint_rows[place], bound);
+    } else {
+      const auto& block = blocks[place];
+      left.misses = ((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0;
+      left.slides = left.slides || (block.slides >> source.lane & 1) != 0;
+    }
+    if (left.misses) break;
+  }
+  return left;
+}
+
+/// Tells the sweeps what is left to them of an island.
+template <int D, int W>
+static void hand_over(const typename IslandSolver<D>::Island& island, bool sweeps_joints,
+                      bool sweeps_contacts, StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const auto& source = solver.sources[static_cast<std::size_t>(g)];
+    const auto place = static_cast<std::size_t>(source.place);
+    if (source.lane < 0)
+      scratch.joint_rows[place].solved_directly = !sweeps_joints;
+    else if (sweeps_contacts)
+      blocks[place].settled &= ~(LaneBits{1} << source.lane);
+  }
+}
+
+/// Solves the islands that are small enough at once, from where the warm start has led, and leaves
+/// those alone that it has brought to rest. What is solved, and what rests without sliding, biased
+/// sweeps pass by; what was solved in part is left to soft sweeps as well, for joints cannot wait.
 ///
-/// Reads and writes velocities and impulses of contacts and joints. Serial, island by island in the
-/// order of their lowest slots.
+/// Reads and writes velocities and impulses of contacts and joints, and which lanes are settled.
+/// Serial, island by island in the order of their lowest slots.
 template <int D, int W>
 void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   if (context.tuning.contact_block != ContactBlockRows::kIsland) return;
   IslandSolver<D>& solver = scratch.islands_solved;
+  if (solver.groups.empty()) return;
+  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   solver.tensions.clear();
+  ContactKernels<D, W>::look_for_rest(
+      context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(blocks.size())}));
+  for (auto& block : blocks) block.settled = kAllLanes<W> & ~block.left;
   for (auto& island : solver.islands) {
+    if (island.groups.begin == island.groups.end) continue;
+    island.corrects = false;
+    const Remainder left = remainder_of<D, W>(context, scratch, island);
+    island.stirred = left.misses;
+    if (!left.misses) {
+      ++solver.work.rests;
+      hand_over<D, W>(island, false, island.swept || left.slides, scratch);
+      continue;
+    }
+    if (island.products_left <= 0) {
+      hand_over<D, W>(island, true, true, scratch);
+      continue;
+    }
     gather_island<D, W>(context, scratch, island);
-    const Solved solved = solver.solve(island, scratch.masses, scratch.motions, kTolerance);
-    if (solved != Solved::kAlready) scatter_island<D, W>(scratch, island);
-    // What was solved in part is left to soft sweeps as well, for joints cannot wait.
-    for (int g = island.groups.begin; g < island.groups.end; ++g)
-      if (!solver.groups[static_cast<std::size_t>(g)].is_contact)
-        scratch
-            .joint_rows[static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place)]
-            .solved_directly = solved != Solved::kPartly;
+    const Solved solved = solver.solve(island, scratch.masses, scratch.motions);
+    scatter_island<D, W>(scratch, island);
+    const bool in_part = solved == Solved::kPartly;
+    hand_over<D, W>(island, in_part,
+                    in_part || island.swept || solver.leaves_for_sweeps(island, kRest.misses),
+                    scratch);
   }
 }
 
@@ -235,15 +300,17 @@ template <int D>
 void correct_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   if (context.tuning.contact_block != ContactBlockRows::kIsland) return;
   const IslandSolver<D>& solver = scratch.islands_solved;
-  for (std::size_t node = 0; node < solver.correction.size(); ++node) {
-    if (solver.island_of[solver.body_of[node]] < 0) continue;
-    Motion<D>& motion = scratch.motions[solver.body_of[node]];
-    Spin<D> turn;
-    for (int i = 0; i < D; ++i)
-      motion.delta_position[i] += context.h * static_cast<float>(solver.correction[node][i]);
-    for (int i = 0; i < Dim<D>::kSpin; ++i)
-      turn[i] = context.h * static_cast<float>(solver.correction[node][D + i]);
-    if (can_turn<D>(scratch.masses[solver.body_of[node]])) turn_by(turn, motion);
+  for (const auto& island : solver.islands) {
+    for (int n = island.nodes.begin; n < island.nodes.end && island.corrects; ++n) {
+      const auto node = static_cast<std::size_t>(n);
+      Motion<D>& motion = scratch.motions[solver.body_of[node]];
+      Spin<D> turn;
+      for (int i = 0; i < D; ++i)
+        motion.delta_position[i] += context.h * static_cast<float>(solver.correction[node][i]);
+      for (int i = 0; i < Dim<D>::kSpin; ++i)
+        turn[i] = context.h * static_cast<float>(solver.correction[node][D + i]);
+      if (can_turn<D>(scratch.masses[solver.body_of[node]])) turn_by(turn, motion);
+    }
   }
 }
 

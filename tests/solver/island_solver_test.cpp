@@ -17,11 +17,13 @@ struct BodyOnGround {
     solver.matrix.begin(1);
     EXPECT_TRUE(solver.matrix.analyse({0, 1}, 100, island.steps));
     island.nodes = {0, 1};
+    island.products = 1;
+    island.products_left = 1000;
     solver.body_of = {0};
     solver.change.resize(1);
     solver.correction.resize(1);
     for (int point = 0; point < 2; ++point) {
-      solver.groups.push_back({-1, 0, -1, 2 * point, 2, true, 0.5f});
+      solver.groups.push_back({-1, 0, -1, 2 * point, 2, true, 0.5, {}, {}});
       add_row(0.0f, 1.0f);
       add_row(1.0f, 0.0f);
     }
@@ -35,7 +37,7 @@ struct BodyOnGround {
     row.stiffness = 1000.0f;
     solver.rows.push_back(row);
   }
-  Solved solve() { return solver.solve(island, masses, motions, 1.0e-3); }
+  Solved solve() { return solver.solve(island, masses, motions); }
 };
 
 TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
@@ -44,6 +46,41 @@ TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
   EXPECT_EQ(body.solve(), Solved::kWhole);
   EXPECT_NEAR(body.solver.change[0][1], 1.0, 1.0e-3);
   EXPECT_NEAR(body.solver.rows[0].impulse + body.solver.rows[2].impulse, 1.0, 1.0e-3);
+}
+
+TEST(IslandSolver, TriesNoFurtherOnceItHasCostEnough) {
+  const auto factors = [](std::int64_t products_left) {
+    BodyOnGround body;
+    body.island.products_left = products_left;
+    for (const std::size_t normal : {0, 2}) body.solver.rows[normal].missing = -1.0;
+    for (const std::size_t tangent : {1, 3}) {
+      body.solver.rows[tangent].missing = 3.0;
+      body.solver.rows[tangent].impulse = 2.0;
+    }
+    EXPECT_EQ(body.solve(), Solved::kPartly);
+    EXPECT_EQ(body.island.products_left,
+              products_left - static_cast<std::int64_t>(body.solver.work.factors));
+    return body.solver.work.factors;
+  };
+  EXPECT_GT(factors(1000), factors(1));
+}
+
+TEST(IslandSolver, LeavesForSweepsWhatSlidesPullsOrApproaches) {
+  BodyOnGround body;
+  for (const std::size_t normal : {0, 2}) body.solver.rows[normal].missing = -1.0;
+  ASSERT_EQ(body.solve(), Solved::kWhole);
+  EXPECT_FALSE(body.solver.leaves_for_sweeps(body.island, 1.0e-2));
+  const std::vector<IslandRow<2>> solved = body.solver.rows;
+  body.solver.rows[0].missing = -0.1;
+  EXPECT_TRUE(body.solver.leaves_for_sweeps(body.island, 1.0e-2)) << "it approaches";
+  body.solver.rows = solved;
+  body.solver.rows[2].missing = 0.1;
+  EXPECT_TRUE(body.solver.leaves_for_sweeps(body.island, 1.0e-2)) << "it is pulled";
+  body.solver.rows = solved;
+  body.solver.rows[3].missing = -0.1;
+  EXPECT_TRUE(body.solver.leaves_for_sweeps(body.island, 1.0e-2)) << "it slides";
+  body.solver.rows[2].impulse = 0.0;
+  EXPECT_FALSE(body.solver.leaves_for_sweeps(body.island, 1.0e-2)) << "and nothing holds it";
 }
 
 // What is left of an impulse can be so small that its square is no float: 0 over 0 is no direction.
