@@ -115,6 +115,7 @@ Json to_json(const client::JoinReport& report) {
                  {"digest", hex16(report.final_digest)},
                  {"frames", progress.frames},
                  {"snapshots", progress.snapshots},
+                 {"states_kept", progress.states_kept},
                  {"digests_compared", progress.digests_compared},
                  {"mismatches", progress.mismatches},
                  {"resyncs", progress.resyncs},

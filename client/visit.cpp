@@ -25,10 +25,11 @@ bool may_pass(protocol::Refusal code) {
 
 /// Adds the counts of an earlier connection; what is not a count stays.
 void add_counts(const Progress& before, Progress& now) {
-  if (before.snapshots != 0) now.first_tick = before.first_tick;
-  if (now.snapshots == 0) now.last_tick = before.last_tick;
+  if (before.begun()) now.first_tick = before.first_tick;
+  if (!now.begun()) now.last_tick = before.last_tick;
   now.frames += before.frames;
   now.snapshots += before.snapshots;
+  now.states_kept += before.states_kept;
   now.digests_compared += before.digests_compared;
   now.mismatches += before.mismatches;
   now.resyncs += before.resyncs;
@@ -76,8 +77,9 @@ void Visit::begin(std::chrono::milliseconds wait) {
   }
   options_.resume = resume_;
   options_.room = room_;
-  attempt_ = std::make_unique<Attempt>(options_, std::move(simulation.value()), wait);
-  if (report_.progress.snapshots != 0) attempt_->count_from(report_.progress.first_tick);
+  if (has_kept_) simulation.value().restore(kept_);
+  attempt_ = std::make_unique<Attempt>(options_, std::move(simulation.value()), has_kept_, wait);
+  if (report_.progress.begun()) attempt_->count_from(report_.progress.first_tick);
 }
 
 void Visit::poll(std::chrono::milliseconds wait) {
@@ -94,7 +96,7 @@ void Visit::keep_welcome() {
   resume_ = welcome.resume;
   room_ = welcome.room.empty() ? options_.room : welcome.room;
   welcomed_ = true;
-  if (attempt_->follower().progress().snapshots == 0) return;
+  if (!attempt_->follower().progress().begun()) return;
   const auto now = Clock::now();
   if (!working_since_) working_since_ = now;
   if (broken_) {
@@ -122,8 +124,20 @@ void Visit::attempt_ended() {
     return;
   }
   count(*attempt_);
+  keep_state(attempt_->follower());
   ++report_.tries;
   begin(wait);
+}
+
+/// Keeps what a later connection can go on from: of this one, or of an older one where this one has
+/// come to nothing.
+void Visit::keep_state(const Follower& ended) {
+  if (resume_.empty())
+    has_kept_ = false;
+  else if (ended.keep(kept_))
+    has_kept_ = true;
+  else if (ended.progress().begun())
+    has_kept_ = false;
 }
 
 bool Visit::comes_back(const Attempt& ended) {
@@ -142,7 +156,7 @@ void Visit::count(const Attempt& ended) {
   Progress now = ended.follower().progress();
   add_counts(report_.progress, now);
   report_.progress = now;
-  if (ended.follower().progress().snapshots != 0) report_.final_digest = ended.follower().digest();
+  if (ended.follower().progress().begun()) report_.final_digest = ended.follower().digest();
   report_.bytes_in += ended.connection().bytes_in();
   report_.bytes_out += ended.connection().bytes_out();
   const auto* replica = dynamic_cast<const Replica*>(&ended.follower());
@@ -159,7 +173,7 @@ JoinReport Visit::report() const {
   Progress now = attempt_->follower().progress();
   add_counts(report_.progress, now);
   report.progress = now;
-  const bool older = attempt_->follower().progress().snapshots == 0 && report_.tries != 0;
+  const bool older = !attempt_->follower().progress().begun() && report_.tries != 0;
   if (!older) report.final_digest = attempt_->follower().digest();
   report.bytes_in += attempt_->connection().bytes_in();
   report.bytes_out += attempt_->connection().bytes_out();

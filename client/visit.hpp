@@ -49,6 +49,7 @@ class Visit {
   bool comes_back(const Attempt& ended);
   void count(const Attempt& ended);
   void keep_welcome();
+  void keep_state(const Follower& ended);
 
   JoinOptions options_;
   Backoff backoff_;
@@ -56,6 +57,8 @@ class Visit {
   JoinReport report_;  ///< Of the attempts before this one.
   std::vector<std::byte> resume_;
   std::string room_;
+  scenes::Simulation::Saved kept_;  ///< The confirmed state that the last connection has left.
+  bool has_kept_ = false;
   bool welcomed_ = false;  ///< Once at least.
   bool forgotten_ =
       false;  ///< The server no longer knew our resume token; it has let nobody in yet.

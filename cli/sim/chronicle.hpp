@@ -64,6 +64,7 @@ enum class Event : std::uint8_t {
   kSlowPeerDropped,
   kTokenShown,   ///< And the hello with it was good.
   kSeatResumed,  ///< By a secret of the last welcome.
+  kStateKept,    ///< And the server went on from the state that the client still had.
   kQuantisedShown,
   kRewind,
   kSeenLate,  ///< By a spectator, a tick that was right.

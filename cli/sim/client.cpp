@@ -59,6 +59,7 @@ void SimClient::dial() {
   if (wire_->flips_up) room.ledger(wire_->era).excuse_inputs();
   if (wire_->flips_up || wire_->flips_down) room.excuse_desyncs();
   dialed_ns_ = chronicle_->now_ns;
+  keep_state();
   observer_.emplace(room.ledger(wire_->era), persona_.name, *chronicle_);
   framer_.emplace(protocol::kServerMessageBytesMax);
   chronicle_->note(persona_.name + " connects: connection " + std::to_string(wire_->number));
@@ -70,6 +71,18 @@ void SimClient::dial() {
   draw_mischief();
   make_follower();
   follower_->greet(outbox_);
+}
+
+/// As client::Visit does; but what came over a damaged connection is nobody's word, later either.
+void SimClient::keep_state() {
+  if (!follower_) return;
+  const bool trusted = !observer_->excused() && !ticket_.secret.empty();
+  if (trusted && follower_->keep(kept_.state)) {
+    kept_.is_there = true;
+    kept_.disturbed = observer_->disturbed();
+  } else if (!trusted || follower_->progress().begun()) {
+    kept_.is_there = false;
+  }
 }
 
 void SimClient::make_follower() {
@@ -90,7 +103,9 @@ void SimClient::make_follower() {
   options.input = [this](int seat, std::uint64_t tick) {
     return honest_input(settings_->seed, seat, tick);
   };
+  options.holds_state = kept_.is_there;
   auto simulation = std::move(scenes::Simulation::create(*scene_).value());
+  if (kept_.is_there) simulation.restore(kept_.state);
   if (lockstep()) {
     follower_ = std::make_unique<client::Replica>(std::move(simulation), std::move(options));
   } else {
@@ -143,6 +158,7 @@ void SimClient::take(const protocol::ServerMessage& message) {
   } else {
     take_planted(message);
   }
+  if (std::holds_alternative<protocol::Welcome>(message)) go_on_from_kept();
   check_after(snapshots);
   if (const auto* welcome = std::get_if<protocol::Welcome>(&message)) take_welcome(*welcome);
   const client::Progress& progress = follower_->progress();
@@ -153,6 +169,13 @@ void SimClient::take(const protocol::ServerMessage& message) {
   }
   ended_ = progress.phase == client::Phase::kEnded && host_->draining();
   finish(progress.reason);
+}
+
+/// What was wrong with the state when its connection ended still is.
+void SimClient::go_on_from_kept() {
+  if (follower_->progress().states_kept == 0) return;
+  chronicle_->count(Event::kStateKept);
+  if (kept_.disturbed) observer_->disturb();
 }
 
 void SimClient::take_welcome(const protocol::Welcome& welcome) {

@@ -57,6 +57,8 @@ class SimClient {
 
   void dial();
   void draw_mischief();
+  void keep_state();
+  void go_on_from_kept();
   void make_follower();
   void take_welcome(const protocol::Welcome& welcome);
   void take_refusal(const protocol::Refused& refused);
@@ -94,6 +96,14 @@ class SimClient {
   std::unique_ptr<client::Follower> follower_;
   std::optional<Observer> observer_;
   std::optional<protocol::Framer> framer_;
+  /// What the last connection has left to go on from, if anything; and whether one bit of it is
+  /// wrong.
+  struct Kept {
+    scenes::Simulation::Saved state;
+    bool is_there = false;
+    bool disturbed = false;
+  };
+  Kept kept_;
   client::Outbox outbox_;
   protocol::Bytes unsent_;
   Mischief mischief_;

@@ -14,13 +14,15 @@ using Clock = std::chrono::steady_clock;
 
 constexpr std::chrono::milliseconds kPingInterval{500};
 
-std::unique_ptr<Follower> make_follower(const JoinOptions& options, scenes::Simulation simulation) {
+std::unique_ptr<Follower> make_follower(const JoinOptions& options, scenes::Simulation simulation,
+                                        bool holds_state) {
   FollowerOptions follower;
   follower.scene_digest = scenes::scene_digest(options.scene);
   follower.seat_wish = options.seat_wish;
   follower.name = options.name;
   follower.room = options.room;
   follower.resume = options.resume;
+  follower.holds_state = holds_state;
   // A token is good once; the resume token stands for it from then on.
   if (options.resume.empty()) follower.token = options.token;
   follower.profile = options.profile;
@@ -45,10 +47,10 @@ std::unique_ptr<Follower> make_follower(const JoinOptions& options, scenes::Simu
 
 }  // namespace
 
-Visit::Attempt::Attempt(const JoinOptions& options, scenes::Simulation simulation,
+Visit::Attempt::Attempt(const JoinOptions& options, scenes::Simulation simulation, bool holds_state,
                         std::chrono::milliseconds wait)
     : options_(options),
-      follower_(make_follower(options, std::move(simulation))),
+      follower_(make_follower(options, std::move(simulation), holds_state)),
       timer_(io_),
       connection_(io_, {options.connect, options.silence}, handlers(), options.tls) {
   if (wait.count() == 0) {
@@ -89,7 +91,7 @@ void Visit::Attempt::receive(const protocol::ServerMessage& message) {
   heard_ = true;
   flush();
   const Progress& progress = follower_->progress();
-  if (before == Phase::kGreeting && progress.phase == Phase::kLoading && options_.on_welcome) {
+  if (before == Phase::kGreeting && follower_->welcomed() && options_.on_welcome) {
     options_.on_welcome(follower_->welcome());
   }
   if (progress.over()) react();
@@ -97,8 +99,7 @@ void Visit::Attempt::receive(const protocol::ServerMessage& message) {
   if (progress.phase == Phase::kRefused) return leave(End::kRefused, progress.reason);
   if (progress.phase == Phase::kFailed) return leave(End::kFailed, progress.reason);
   const std::uint64_t first = first_tick_.value_or(progress.first_tick);
-  if (options_.ticks != 0 && progress.snapshots != 0 &&
-      progress.last_tick >= first + options_.ticks) {
+  if (options_.ticks != 0 && progress.begun() && progress.last_tick >= first + options_.ticks) {
     react();
     leave(End::kTicks, "all ticks seen");
   }
@@ -137,7 +138,7 @@ void Visit::Attempt::on_poll() {
   if (options_.should_stop && options_.should_stop()) return leave(End::kStopped, "told to stop");
   if (!open_) return;
   const auto now = Clock::now();
-  if (follower_->progress().snapshots == 0 && now - opened_ > options_.handshake) {
+  if (!follower_->progress().begun() && now - opened_ > options_.handshake) {
     return leave(End::kDisconnected, "no welcome in time");
   }
   if (now - pinged_ < kPingInterval) return;

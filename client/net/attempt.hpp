@@ -14,8 +14,9 @@ namespace cycloid::client {
 /// carries it.
 class Visit::Attempt {
  public:
+  /// @param holds_state  The simulation is what the connection before has left, not a new one.
   /// @param wait  Before it connects.
-  Attempt(const JoinOptions& options, scenes::Simulation simulation,
+  Attempt(const JoinOptions& options, scenes::Simulation simulation, bool holds_state,
           std::chrono::milliseconds wait);
 
   void poll(std::chrono::milliseconds wait);

@@ -32,6 +32,11 @@ void Follower::greet(Outbox& out) {
   hello.build = options_.build;
   hello.profile = options_.profile;
   out.emplace_back(std::move(hello));
+  if (holds_state()) out.emplace_back(protocol::Ack{simulation_.tick()});
+}
+
+bool Follower::holds_state() const {
+  return options_.holds_state && mode_ == protocol::Mode::kLockstep && !options_.resume.empty();
 }
 
 bool Follower::expect_state(const char* what) {
@@ -43,7 +48,7 @@ bool Follower::expect_state(const char* what) {
 void Follower::receive(const protocol::ServerMessage& message, Outbox& out) {
   if (progress_.over()) return;
   const auto handler = protocol::Overloaded{
-      [&](const protocol::Welcome& welcome) { on_welcome(welcome); },
+      [&](const protocol::Welcome& welcome) { on_welcome(welcome, out); },
       [&](const protocol::Refused& refused) { on_refused(refused); },
       [&](const protocol::InputFrame& frame) {
         if (expect_state("a frame") && check_frame(frame)) on_frame(frame, out);
@@ -98,7 +103,7 @@ void Follower::on_refused(const protocol::Refused& refused) {
   progress_.reason = refused.reason;
 }
 
-void Follower::on_welcome(const protocol::Welcome& welcome) {
+void Follower::on_welcome(const protocol::Welcome& welcome, Outbox& out) {
   const auto seats = static_cast<std::uint32_t>(simulation_.seats());
   if (progress_.phase != Phase::kGreeting) return fail("a second welcome");
   if (welcome.seats != seats) {
@@ -121,10 +126,26 @@ void Follower::on_welcome(const protocol::Welcome& welcome) {
   progress_.seat = welcome.seat;
   progress_.phase = Phase::kLoading;
   on_seated();
+  if (holds_state() && welcome.tick == simulation_.tick()) go_on_from_kept(out);
+}
+
+/// The frames since come at once, and what I would say for their ticks is late: so nothing is said
+/// until the tick is made at which the match is now. A server that sends a state all the same is
+/// heard, too.
+void Follower::go_on_from_kept(Outbox& out) {
+  progress_.first_tick = progress_.last_tick = welcome_.tick;
+  progress_.phase = Phase::kRunning;
+  ++progress_.states_kept;
+  on_kept();
+  ping(out);
+  catch_up_ping_ = pings_;
 }
 
 void Follower::on_pong(const protocol::Pong& pong) {
-  if (pong.token == 0 || pong.token > pings_) fail("a pong that was not asked for");
+  if (pong.token == 0 || pong.token > pings_) return fail("a pong that was not asked for");
+  if (pong.token != catch_up_ping_) return;
+  catch_up_ping_ = 0;
+  caught_up_tick_ = pong.tick;
 }
 
 void Follower::on_part(const protocol::SnapshotPart& part, Outbox& out) {
@@ -152,6 +173,7 @@ void Follower::on_notice(const protocol::RoomNotice& notice) {
     progress_.phase = Phase::kLoading;
     ++progress_.rewinds;
     first_input_tick_ = next_input_tick_ = 0;
+    catch_up_ping_ = caught_up_tick_ = 0;
     on_rewound(notice.value);
   }
   if (options_.on_notice) options_.on_notice(notice);
@@ -181,14 +203,15 @@ bool Follower::load(std::uint64_t tick, std::uint64_t digest, std::span<const st
 }
 
 void Follower::loaded(std::uint64_t tick) {
-  if (progress_.snapshots == 0) progress_.first_tick = tick;
+  if (!progress_.begun()) progress_.first_tick = tick;
   progress_.last_tick = tick;
   progress_.phase = Phase::kRunning;
+  catch_up_ping_ = caught_up_tick_ = 0;
   ++progress_.snapshots;
 }
 
 void Follower::send_inputs(std::uint64_t last, std::uint64_t burst, Outbox& out) {
-  if (!seated() || !options_.input) return;
+  if (!seated() || !options_.input || catches_up()) return;
   if (first_input_tick_ == 0) next_input_tick_ = progress_.last_tick + lead();
   // After a leap of the lead the ticks before are past saving.
   if (last >= burst) next_input_tick_ = std::max(next_input_tick_, last - burst + 1);

@@ -48,6 +48,9 @@ class Follower {
   /// For a host that disturbs its own world, such as a test of recovery.
   scenes::Simulation& simulation() { return simulation_; }
   virtual std::vector<scenes::Pose> poses() const { return simulation_.poses(); }
+  /// Saves the confirmed state, for a connection to come to go on from. False, and nothing is
+  /// saved, where there is none, or the server has contradicted it.
+  virtual bool keep(scenes::Simulation::Saved&) const { return false; }
   /// Of the confirmed state, at progress().last_tick.
   virtual std::uint64_t digest() const { return simulation_.digest(); }
 
@@ -61,6 +64,8 @@ class Follower {
   /// Exact state of `tick` and frames from there on will come: what is later is void.
   virtual void on_rewound(std::uint64_t tick) = 0;
   virtual void on_seated() {}
+  /// The server goes on from the state that was handed over.
+  virtual void on_kept() {}
 
   void fail(std::string reason);
   /// Puts the exact state in place of the world; false, and the session has failed, if it is none.
@@ -91,13 +96,16 @@ class Follower {
   scenes::Simulation simulation_;
 
  private:
-  void on_welcome(const protocol::Welcome& welcome);
+  void on_welcome(const protocol::Welcome& welcome, Outbox& out);
+  void go_on_from_kept(Outbox& out);
   void on_pong(const protocol::Pong& pong);
   void on_part(const protocol::SnapshotPart& part, Outbox& out);
   void on_margin(const protocol::Margin& margin);
   void on_notice(const protocol::RoomNotice& notice);
   void on_refused(const protocol::Refused& refused);
   bool expect_state(const char* what);
+  bool holds_state() const;
+  bool catches_up() const { return catch_up_ping_ != 0 || progress_.last_tick < caught_up_tick_; }
   std::uint64_t sent_tick() const { return first_input_tick_ == 0 ? 0 : next_input_tick_ - 1; }
 
   protocol::Mode mode_;
@@ -107,6 +115,8 @@ class Follower {
   SnapshotAssembly assembly_;
   LeadController lead_;
   std::uint64_t pings_ = 0;
+  std::uint64_t catch_up_ping_ = 0;   ///< Its pong will say which tick the match is at; 0: none.
+  std::uint64_t caught_up_tick_ = 0;  ///< What I say before it would be late.
   std::uint64_t base_tick_ = 0;
   std::uint64_t first_input_tick_ = 0;  ///< 0 until an input was sent.
   std::uint64_t next_input_tick_ = 0;

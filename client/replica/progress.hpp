@@ -34,7 +34,8 @@ struct Progress {
   std::uint64_t first_tick = 0;  ///< Of the first exact state.
   std::uint64_t last_tick = 0;   ///< Of the newest state that the server has confirmed.
   std::uint64_t frames = 0;
-  std::uint64_t snapshots = 0;  ///< Exact states and deltas that were taken in.
+  std::uint64_t snapshots = 0;    ///< Exact states and deltas that were taken in.
+  std::uint64_t states_kept = 0;  ///< Times that it went on from the state it came back with.
   std::uint64_t digests_compared = 0;
   std::uint64_t mismatches = 0;  ///< Digests that were compared and differed.
   std::uint64_t resyncs = 0;     ///< Exact states that ended a mismatch.
@@ -46,6 +47,8 @@ struct Progress {
   std::int32_t early_ticks = 0;       ///< As the server's last Margin says.
 
   bool over() const { return phase >= Phase::kEnded; }
+  /// Whether there has been a state of the server's on this connection.
+  bool begun() const { return snapshots + states_kept != 0; }
 };
 
 struct FollowerOptions {
@@ -55,7 +58,10 @@ struct FollowerOptions {
   std::string room;               ///< "": the only one, or the one that the token names.
   std::vector<std::byte> token;   ///< Signed admission; empty where the server asks for none.
   std::vector<std::byte> resume;  ///< Of the last Welcome, to get its seat back; or empty.
-  std::string build;              ///< Compiler and flags, for a desync report.
+  /// The simulation handed over is the confirmed state that the connection before has left: the
+  /// server is asked for the frames since. Of a lockstep client with `resume`, else ignored.
+  bool holds_state = false;
+  std::string build;  ///< Compiler and flags, for a desync report.
   protocol::Profile profile = protocol::Profile::kExact;
   InputSource input;  ///< Asked once for every tick, in order, when the client has a seat.
   /// Most ticks beyond the confirmed one that a replica predicts, up to 64; 0: none.

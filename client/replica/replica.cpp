@@ -18,6 +18,23 @@ void Replica::on_seated() {
   if (predictor_) predictor_->sit(progress_.seat);
 }
 
+void Replica::on_kept() {
+  if (predictor_) predictor_->reset(false);
+  if (options().witness) options().witness->replaced(simulation_);
+}
+
+bool Replica::keep(scenes::Simulation::Saved& into) const {
+  if (progress_.phase != Phase::kRunning || diverged_) return false;
+  if (!predictor_) {
+    simulation_.save(into);
+    return true;
+  }
+  return predictor_->with_confirmed([&](const scenes::Simulation& confirmed) {
+    confirmed.save(into);
+    return true;
+  });
+}
+
 void Replica::on_said(std::uint64_t tick, const scenes::SeatInput& input) {
   if (predictor_) predictor_->hear(tick, input);
 }

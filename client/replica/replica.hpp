@@ -35,6 +35,7 @@ class Replica final : public Follower {
   void settle() override;
   bool advance(Outbox& out) override;
   std::uint64_t digest() const override;
+  bool keep(scenes::Simulation::Saved& into) const override;
 
  private:
   void on_exact(const protocol::Snapshot& state, Outbox& out) override;
@@ -43,6 +44,7 @@ class Replica final : public Follower {
   void on_delta(const protocol::StateDelta& delta, Outbox& out) override;
   void on_rewound(std::uint64_t tick) override;
   void on_seated() override;
+  void on_kept() override;
   void on_said(std::uint64_t tick, const scenes::SeatInput& input) override;
 
   bool can_follow(std::uint64_t tick);

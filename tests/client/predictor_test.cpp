@@ -2,8 +2,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <random>
 
+#include "tests/client/authority.hpp"
 #include "tests/client/simulated_room.hpp"
 #include "tests/determinism/scene_test.hpp"
 
@@ -252,6 +254,59 @@ TEST(PredictingReplica, HostsClockPredictsThroughASilenceUntilTheWindowIsFull) {
   EXPECT_EQ(client.simulation().tick(), 30u);
   EXPECT_EQ(ahead + advanced, 30u);
   EXPECT_EQ(out.size(), advanced) << "each is said as well";
+}
+
+TEST(PredictingReplica, KeepsWhatIsConfirmedAndGoesOnFromIt) {
+  const scenes::Scene scene = scene_of("half-pipe");
+  Authority authority(scene);
+  const auto options = [&](bool holds_state) {
+    FollowerOptions made;
+    made.predict_ticks = 10;
+    made.holds_state = holds_state;
+    made.resume = {std::byte{1}};
+    made.input = [&](int seat, std::uint64_t tick) {
+      return scenes::scripted_input(scene, seat, tick);
+    };
+    return made;
+  };
+  const auto create = [&] { return std::move(scenes::Simulation::create(scene).value()); };
+  Outbox out;
+  Replica before(create(), options(false));
+  scenes::Simulation::Saved kept;
+  EXPECT_FALSE(before.keep(kept)) << "nothing has come yet";
+  before.receive(authority.welcome(0), out);
+  before.receive(authority.snapshot(), out);
+  for (int i = 0; i < 20; ++i) before.receive(authority.frame(), out);
+  before.settle();
+  for (int i = 0; i < 5; ++i) before.advance(out);
+  const std::uint64_t shown = before.simulation().digest();
+  ASSERT_GT(before.simulation().tick(), 20u);
+  ASSERT_TRUE(before.keep(kept));
+  EXPECT_EQ(kept.digest(), authority.simulation().digest());
+  EXPECT_EQ(before.simulation().digest(), shown) << "what is shown has not changed";
+
+  scenes::Simulation simulation = create();
+  simulation.restore(kept);
+  Replica after(std::move(simulation), options(true));
+  out.clear();
+  after.greet(out);
+  ASSERT_EQ(out.size(), 2u);
+  EXPECT_EQ(std::get<protocol::Ack>(out[1]).tick, 20u);
+  after.receive(authority.welcome(0), out);
+  EXPECT_FALSE(after.advance(out)) << "it does not know yet where the match is";
+  for (int i = 0; i < 100; ++i) after.receive(authority.frame(), out);
+  after.receive(protocol::Pong{1, 120}, out);
+  after.receive(authority.frame(), out);
+  after.receive(authority.digest(), out);
+  after.settle();
+  EXPECT_EQ(after.progress().mismatches, 0u);
+  EXPECT_EQ(after.progress().digests_compared, 1u);
+  EXPECT_EQ(after.digest(), authority.simulation().digest());
+  EXPECT_GT(after.simulation().tick(), 121u) << "it predicts again";
+  const auto first = std::ranges::find_if(
+      out, [](const auto& said) { return std::holds_alternative<protocol::Input>(said); });
+  ASSERT_NE(first, out.end());
+  EXPECT_GT(std::get<protocol::Input>(*first).tick, 121u);
 }
 
 }  // namespace

@@ -1,0 +1,102 @@
+#include <algorithm>
+
+#include "tests/client/reconnect_fixture.hpp"
+
+namespace cycloid::client {
+namespace {
+
+using ReconnectState = Reconnect;
+
+TEST_F(ReconnectState, GoesOnFromTheStateThatItStillHolds) {
+  std::optional<protocol::Ack> ack;
+  std::vector<protocol::ClientMessage> said_before_pong;
+  std::optional<protocol::Input> first_input;
+  const JoinReport report = play({
+      [this](Peer& peer, const auto&) {
+        welcome(peer, 1, 10);
+        std::this_thread::sleep_for(milliseconds(100));
+        peer.reset();
+      },
+      [&](Peer& peer, const auto&) {
+        std::vector<protocol::ClientMessage> none;
+        ack = peer.hear_until<protocol::Ack>(none);
+        protocol::Welcome welcome = authority_.welcome(1);
+        welcome.resume = resume_token(2);
+        peer.tell(welcome);
+        for (int i = 0; i < 30; ++i) peer.tell(authority_.frame());
+        const auto ping = peer.hear_until<protocol::Ping>(said_before_pong);
+        peer.tell(protocol::Pong{ping->token, 40});
+        for (int i = 0; i < 5; ++i) peer.tell(authority_.frame());
+        peer.tell(authority_.digest());
+        std::vector<protocol::ClientMessage> others;
+        first_input = peer.hear_until<protocol::Input>(others);
+        peer.tell(protocol::Bye{"over"});
+        peer.drain();
+      },
+  });
+  EXPECT_EQ(report.end, End::kBye) << report.reason;
+  ASSERT_TRUE(ack);
+  EXPECT_EQ(ack->tick, 10u);
+  EXPECT_EQ(report.reconnects, 1u);
+  EXPECT_EQ(report.progress.states_kept, 1u);
+  EXPECT_EQ(report.progress.snapshots, 1u) << "of the first connection";
+  EXPECT_EQ(report.progress.first_tick, 0u);
+  EXPECT_EQ(report.progress.last_tick, 45u);
+  EXPECT_EQ(report.progress.frames, 45u);
+  EXPECT_EQ(report.progress.mismatches, 0u);
+  EXPECT_EQ(report.progress.digests_compared, 1u);
+  EXPECT_EQ(report.final_digest, authority_.simulation().digest());
+  EXPECT_TRUE(std::ranges::none_of(said_before_pong, [](const auto& message) {
+    return std::holds_alternative<protocol::Input>(message);
+  })) << "for ticks that were made long ago";
+  ASSERT_TRUE(first_input);
+  EXPECT_GT(first_input->tick, 40u);
+}
+
+TEST_F(ReconnectState, TakesAStateWhereTheServerDoesNotGoOnFromItsOwn) {
+  for (const bool same_tick : {true, false}) {
+    acceptor_ = tcp::acceptor(io_, {asio::ip::address_v4::loopback(), 0});
+    options_.port = acceptor_.local_endpoint().port();
+    const JoinReport report = play({
+        [this](Peer& peer, const auto&) {
+          welcome(peer, 1, 10);
+          std::this_thread::sleep_for(milliseconds(100));
+          peer.reset();
+        },
+        [&](Peer& peer, const auto&) {
+          if (!same_tick) authority_.frame();
+          welcome(peer, 2, 5);
+          peer.tell(authority_.digest());
+          peer.tell(protocol::Bye{"over"});
+          peer.drain();
+        },
+    });
+    EXPECT_EQ(report.end, End::kBye) << report.reason;
+    EXPECT_EQ(report.progress.snapshots, 2u);
+    EXPECT_EQ(report.progress.states_kept, same_tick ? 1u : 0u);
+    EXPECT_EQ(report.progress.mismatches, 0u);
+    EXPECT_EQ(report.final_digest, authority_.simulation().digest());
+  }
+}
+
+TEST_F(ReconnectState, KeepsNoStateThatTheServerHasContradicted) {
+  const JoinReport report = play({
+      [this](Peer& peer, const auto&) {
+        welcome(peer, 1, 10);
+        peer.tell(protocol::Digest{10, authority_.digest().digest + 1});
+        std::this_thread::sleep_for(milliseconds(100));
+        peer.reset();
+      },
+      [&](Peer& peer, const auto&) {
+        welcome(peer, 2, 5);
+        peer.tell(protocol::Bye{"over"});
+        peer.drain();
+      },
+  });
+  EXPECT_EQ(report.end, End::kBye) << report.reason;
+  EXPECT_EQ(report.progress.states_kept, 0u);
+  EXPECT_EQ(report.final_digest, authority_.simulation().digest());
+}
+
+}  // namespace
+}  // namespace cycloid::client
