@@ -72,6 +72,12 @@ struct JointRow : ConeLimit<D> {
   float upper_impulse;
 };
 
+/// Whether its equalities do not yield, so that an island can hold them.
+template <int D>
+bool is_held(const JointRow<D>& row) {
+  return row.rows_function != nullptr && !row.is_spring[0] && !row.is_spring[1];
+}
+
 template <int D>
 [[gnu::always_inline]] inline float row_speed(const Row<D>& row, const Motion<D>& a,
                                               const Motion<D>& b) {

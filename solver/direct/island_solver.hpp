@@ -36,6 +36,19 @@ struct IslandRows {
   Vec<D, Wide> arm_b;
 };
 
+/// A contact or a rigid joint between the bodies of two slots.
+struct HeldPair {
+  std::uint32_t a;
+  std::uint32_t b;
+  int place;  ///< Block of contacts, or row of joints.
+  int lane;   ///< Of the block; -1: it is a joint.
+  int points;
+  bool a_moves;
+  bool b_moves;
+
+  bool operator==(const HeldPair&) const = default;
+};
+
 /// Torque by which the force of a joint answers to a turn of a body, as an impulse: what makes it
 /// swing, taken implicitly. Acts about all axes but `along`.
 template <int D>
@@ -82,6 +95,7 @@ class IslandSolver {
     Range nodes;
     Range steps;
     Range groups;
+    Range joints;  ///< The last ones of those.
     Range tensions;
     int products;                ///< Of blocks, that factoring takes.
     std::int64_t products_left;  ///< In this tick, before it is left to the sweeps.
@@ -108,6 +122,10 @@ class IslandSolver {
   };
 
   BodyMatrix<D> matrix;
+  std::vector<HeldPair> held;  ///< Contacts in the order of the colouring, then joints.
+  std::vector<HeldPair> held_before;
+  std::vector<int> held_in;                ///< By held pair, its island; -1: left to the sweeps.
+  std::vector<int> group_of;               ///< By held pair in an island: the first of its points'.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.
   std::vector<std::pair<int, int>> pairs_before;
   std::vector<int> beside;  ///< By pair: BodyMatrix::beside.

@@ -210,6 +210,26 @@ static bool misses(const StepContext<D>& context, const StepScratch<D>& scratch,
   return false;
 }
 
+/// In which blocks' lanes the warm start has left something, over all blocks.
+struct Unrest {
+  LaneBits misses = 0;
+  LaneBits stirs = 0;
+  LaneBits slides = 0;
+};
+
+/// Nothing is settled yet but what belongs to no island.
+template <int D, int W>
+static Unrest begin_settling(ContactBlocks<D, W>& contacts) {
+  Unrest all;
+  for (ContactBlock<D, W>& block : contacts.blocks) {
+    block.settled = kAllLanes<W> & ~block.left;
+    all.misses |= block.misses;
+    all.stirs |= block.stirs;
+    all.slides |= block.slides;
+  }
+  return all;
+}
+
 /// What the warm start has left of an island. @pre look_for_rest.
 struct Remainder {
   bool misses;
@@ -217,22 +237,21 @@ struct Remainder {
 };
 template <int D, int W>
 static Remainder remainder_of(const StepContext<D>& context, const StepScratch<D>& scratch,
-                              const typename IslandSolver<D>::Island& island) {
+                              const Unrest& all, const typename IslandSolver<D>::Island& island) {
   const IslandSolver<D>& solver = scratch.islands_solved;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   const float bound = island.stirred ? kRest.stirs : kRest.misses;
   Remainder left{};
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  const bool looks = ((island.stirred ? all.stirs : all.misses) | all.slides) != 0;
+  for (int g = island.groups.begin; g < island.joints.begin && looks && !left.misses; ++g) {
     const auto& source = solver.sources[static_cast<std::size_t>(g)];
-    const auto place = static_cast<std::size_t>(source.place);
-    if (source.lane < 0) {
-      left.misses = misses(context, scratch, scratch.joint_rows[place], bound);
-    } else {
-      const auto& block = blocks[place];
-      left.misses = ((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0;
-      left.slides = left.slides || (block.slides >> source.lane & 1) != 0;
-    }
-    if (left.misses) break;
+    const auto& block = blocks[static_cast<std::size_t>(source.place)];
+    left.misses = ((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0;
+    left.slides = left.slides || (block.slides >> source.lane & 1) != 0;
+  }
+  for (int g = island.joints.begin; g < island.joints.end && !left.misses; ++g) {
+    const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
+    left.misses = misses(context, scratch, scratch.joint_rows[place], bound);
   }
   return left;
 }
@@ -243,13 +262,13 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
                       bool sweeps_contacts, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  for (int g = island.groups.begin; g < island.joints.begin && sweeps_contacts; ++g) {
     const auto& source = solver.sources[static_cast<std::size_t>(g)];
-    const auto place = static_cast<std::size_t>(source.place);
-    if (source.lane < 0)
-      scratch.joint_rows[place].solved_directly = !sweeps_joints;
-    else if (sweeps_contacts)
-      blocks[place].settled &= ~(LaneBits{1} << source.lane);
+    blocks[static_cast<std::size_t>(source.place)].settled &= ~(LaneBits{1} << source.lane);
+  }
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
+    scratch.joint_rows[place].solved_directly = !sweeps_joints;
   }
 }
 
@@ -264,15 +283,15 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   if (context.tuning.contact_block != ContactBlockRows::kIsland) return;
   IslandSolver<D>& solver = scratch.islands_solved;
   if (solver.groups.empty()) return;
-  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   solver.tensions.clear();
   ContactKernels<D, W>::look_for_rest(
-      context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(blocks.size())}));
-  for (auto& block : blocks) block.settled = kAllLanes<W> & ~block.left;
+      context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
+  const Unrest all = begin_settling<D, W>(contacts);
   for (auto& island : solver.islands) {
     if (island.groups.begin == island.groups.end) continue;
     island.corrects = false;
-    const Remainder left = remainder_of<D, W>(context, scratch, island);
+    const Remainder left = remainder_of<D, W>(context, scratch, all, island);
     island.stirred = left.misses;
     if (!left.misses) {
       ++solver.work.rests;
