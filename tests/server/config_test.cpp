@@ -153,7 +153,8 @@ TEST(Config, WhatIsNotAsciiIsRefusedWithItsLine) {
 }
 
 TEST(Config, WhatIsNoTomlIsSaidWithItsLine) {
-  for (const char* text : {"[server]\nport = \n", "[server]\nport = 1\nport = 2\n"}) {
+  for (const char* text : {"[server]\nport = \n", "[server]\nport = 1\nport = 2\n", "\n[=]\n",
+                           "\n[[ #]]\n", "\n[server.=]\n"}) {
     const ConfigResult read = read_config(text, load_for_test);
     ASSERT_EQ(read.mistakes.size(), 1u);
     EXPECT_GE(read.mistakes[0].line, 2u) << read.mistakes[0].reason;
