@@ -13,6 +13,7 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <map>
 #include <set>
 #include <utility>
 
@@ -107,13 +108,14 @@ class Reader {
   }
 
   void complain(std::uint32_t line, std::string key, std::string reason) {
-    result_.mistakes.push_back({line, std::move(key), std::move(reason)});
+    mistakes_.emplace(line, ConfigMistake{line, std::move(key), std::move(reason)});
   }
 
   ConfigResult finish() {
-    std::ranges::stable_sort(result_.mistakes, {}, &ConfigMistake::line);
-    if (result_.mistakes.empty()) result_.config = std::move(config_);
-    return std::move(result_);
+    ConfigResult result;
+    for (auto& [line, mistake] : mistakes_) result.mistakes.push_back(std::move(mistake));
+    if (mistakes_.empty()) result.config = std::move(config_);
+    return result;
   }
 
   template <class Target>
@@ -318,7 +320,7 @@ class Reader {
 
   const SceneLoader& load_scene_;
   ServerConfig config_;
-  ConfigResult result_;
+  std::multimap<std::uint32_t, ConfigMistake> mistakes_;  ///< By line, then as they were found.
   std::map<std::string, std::uint32_t> lines_;
 };
 
