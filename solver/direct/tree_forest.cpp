@@ -1,20 +1,13 @@
 #include <algorithm>
 
 #include "solver/direct/tree_solver.hpp"
+#include "solver/union_find.hpp"
 
 namespace cycloid::solver {
 
 template <int D>
 static bool moves(std::span<const BodyMass<D>> masses, std::uint32_t slot) {
   return slot < masses.size() && masses[slot].inverse_mass > 0.0f;
-}
-
-static std::uint32_t find_tree(std::vector<std::uint32_t>& tree, std::uint32_t slot) {
-  while (tree[slot] != slot) {
-    tree[slot] = tree[tree[slot]];
-    slot = tree[slot];
-  }
-  return slot;
 }
 
 template <int D>
@@ -28,12 +21,12 @@ void TreeSolver<D>::find_forest(std::span<const JointBlock<D>> joints,
     const bool moves_b = moves(masses, joints[i].body_b);
     in_tree_[i] = moves_a || moves_b;
     if (!moves_a || !moves_b) continue;
-    const std::uint32_t tree_a = find_tree(tree_, joints[i].body_a);
-    const std::uint32_t tree_b = find_tree(tree_, joints[i].body_b);
+    const std::uint32_t tree_a = root_of(tree_, joints[i].body_a);
+    const std::uint32_t tree_b = root_of(tree_, joints[i].body_b);
     in_tree_[i] = tree_a != tree_b;
     tree_[std::max(tree_a, tree_b)] = std::min(tree_a, tree_b);
   }
-  for (std::uint32_t slot = 0; slot < masses.size(); ++slot) tree_[slot] = find_tree(tree_, slot);
+  for (std::uint32_t slot = 0; slot < masses.size(); ++slot) tree_[slot] = root_of(tree_, slot);
 }
 
 template <int D>

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "solver/stages/stages.hpp"
+#include "solver/union_find.hpp"
 
 namespace cycloid::solver {
 
@@ -44,14 +45,6 @@ static bool list_held(StepScratch<D>& scratch) {
   return same_slots && solver.held == solver.held_before;
 }
 
-static std::uint32_t find_root(std::vector<std::uint32_t>& tree, std::uint32_t slot) {
-  while (tree[slot] != slot) {
-    tree[slot] = tree[tree[slot]];
-    slot = tree[slot];
-  }
-  return slot;
-}
-
 /// Islands in the order of their lowest slots, their nodes in the order of the slots.
 template <int D>
 static void find_islands(StepScratch<D>& scratch) {
@@ -64,14 +57,14 @@ static void find_islands(StepScratch<D>& scratch) {
     if (pair.a_moves) solver.island_of[pair.a] = 0;
     if (pair.b_moves) solver.island_of[pair.b] = 0;
     if (!pair.a_moves || !pair.b_moves) continue;
-    const std::uint32_t a = find_root(solver.tree, pair.a);
-    const std::uint32_t b = find_root(solver.tree, pair.b);
+    const std::uint32_t a = root_of(solver.tree, pair.a);
+    const std::uint32_t b = root_of(solver.tree, pair.b);
     solver.tree[std::max(a, b)] = std::min(a, b);
   }
   solver.islands.clear();
   for (std::uint32_t slot = 0; slot < slots; ++slot) {
     if (solver.island_of[slot] < 0) continue;
-    const std::uint32_t root = find_root(solver.tree, slot);
+    const std::uint32_t root = root_of(solver.tree, slot);
     if (root == slot) {
       solver.island_of[slot] = static_cast<int>(solver.islands.size());
       solver.islands.emplace_back();

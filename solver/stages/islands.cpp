@@ -3,17 +3,9 @@
 #include "solver/collision/collide.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trace.hpp"
+#include "solver/union_find.hpp"
 
 namespace cycloid::solver {
-
-/// The root of a body's island; halves the path on the way, which changes no result.
-static std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t body) {
-  while (parent[body] != body) {
-    parent[body] = parent[parent[body]];
-    body = parent[body];
-  }
-  return body;
-}
 
 /// The lower slot becomes the root, so that an island is named by its lowest body.
 static void join(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b) {

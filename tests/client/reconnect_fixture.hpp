@@ -118,6 +118,13 @@ class Reconnect : public testing::Test {
     peer.tell(authority_.snapshot());
     for (int i = 0; i < ticks; ++i) peer.tell(authority_.frame());
   }
+  /// Lets the client in, shows it some ticks, and hangs up once all was heard.
+  Script hang_up_after(int ticks) {
+    return [this, ticks](Peer& peer, const protocol::Hello&) {
+      welcome(peer, 1, ticks);
+      peer.hang_up();
+    };
+  }
   static Script refuse(protocol::Refusal code) {
     return [code](Peer& peer, const protocol::Hello&) {
       peer.tell(protocol::Refused{code, "no"});

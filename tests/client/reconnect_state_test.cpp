@@ -12,11 +12,7 @@ TEST_F(ReconnectState, GoesOnFromTheStateThatItStillHolds) {
   std::vector<protocol::ClientMessage> said_before_pong;
   std::optional<protocol::Input> first_input;
   const JoinReport report = play({
-      [this](Peer& peer, const auto&) {
-        welcome(peer, 1, 10);
-        std::this_thread::sleep_for(milliseconds(100));
-        peer.reset();
-      },
+      hang_up_after(10),
       [&](Peer& peer, const auto&) {
         std::vector<protocol::ClientMessage> none;
         ack = peer.hear_until<protocol::Ack>(none);
@@ -58,11 +54,7 @@ TEST_F(ReconnectState, TakesAStateWhereTheServerDoesNotGoOnFromItsOwn) {
     acceptor_ = tcp::acceptor(io_, {asio::ip::address_v4::loopback(), 0});
     options_.port = acceptor_.local_endpoint().port();
     const JoinReport report = play({
-        [this](Peer& peer, const auto&) {
-          welcome(peer, 1, 10);
-          std::this_thread::sleep_for(milliseconds(100));
-          peer.reset();
-        },
+        hang_up_after(10),
         [&](Peer& peer, const auto&) {
           if (!same_tick) authority_.frame();
           welcome(peer, 2, 5);
@@ -84,8 +76,7 @@ TEST_F(ReconnectState, KeepsNoStateThatTheServerHasContradicted) {
       [this](Peer& peer, const auto&) {
         welcome(peer, 1, 10);
         peer.tell(protocol::Digest{10, authority_.digest().digest + 1});
-        std::this_thread::sleep_for(milliseconds(100));
-        peer.reset();
+        peer.hang_up();
       },
       [&](Peer& peer, const auto&) {
         welcome(peer, 2, 5);
