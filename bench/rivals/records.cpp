@@ -27,10 +27,14 @@ constexpr std::size_t kNumbers = 13;
 struct NodeEngine {
   const char* name;
   std::uint32_t dimension;
-  std::uint32_t relax_sweeps;  ///< In each of their substeps, beside one sweep.
+  std::uint32_t sweeps;  ///< In each of their substeps; Jolt's are of velocities.
+  std::uint32_t relax_sweeps;
 };
-constexpr NodeEngine kNodeEngines[] = {
-    {"Box2D v3", 2, 1}, {"Box2D v3, 60 Hz", 2, 1}, {"Rapier 2D", 2, 0}, {"Rapier 3D", 3, 0}};
+constexpr NodeEngine kNodeEngines[] = {{"Box2D v3", 2, 1, 1},
+                                       {"Box2D v3, 60 Hz", 2, 1, 1},
+                                       {"Rapier 2D", 2, 1, 0},
+                                       {"Rapier 3D", 3, 1, 0},
+                                       {"Jolt", 3, 10, 0}};
 
 void write_text(const std::string& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary);
@@ -193,7 +197,8 @@ void export_runs(const std::vector<SceneChart>& charts, const RecordedSettings& 
     for (const NodeEngine& engine : kNodeEngines)
       for (const std::uint32_t substeps : settings.substeps)
         if (engine.dimension == scene.dimension)
-          exporter.add(chart, scene, engine.name, {engine.name, substeps, 1, engine.relax_sweeps});
+          exporter.add(chart, scene, engine.name,
+                       {engine.name, substeps, engine.sweeps, engine.relax_sweeps});
   }
   exporter.finish();
 }

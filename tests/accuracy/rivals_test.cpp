@@ -188,7 +188,7 @@ TEST(Rivals, AreExportedWithEverySettingOfTheirDimension) {
               ElementsAre("stack ours 4", "stack ours 4", "stack Box2D v3 2", "stack Box2D v3 8",
                           "stack Box2D v3, 60 Hz 2", "stack Box2D v3, 60 Hz 8", "stack Rapier 2D 2",
                           "stack Rapier 2D 8", "dupli ours 4", "dupli ours 4", "dupli Rapier 3D 2",
-                          "dupli Rapier 3D 8"))
+                          "dupli Rapier 3D 8", "dupli Jolt 2", "dupli Jolt 8"))
       << "in trial-rush something happens besides what the scene says";
   std::ifstream stream(folder.file(runs[0].at("file")));
   const std::string text((std::istreambuf_iterator<char>(stream)), {});

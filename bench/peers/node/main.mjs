@@ -8,6 +8,7 @@ import { cpus } from 'node:os';
 import { argv, cpuUsage, exit, stderr, stdout, version } from 'node:process';
 import { parseArgs } from 'node:util';
 import { box2dEngine } from './box2d.mjs';
+import { joltEngine } from './jolt.mjs';
 import { Module, ourEngine } from './ours.mjs';
 import { rapierEngine } from './rapier.mjs';
 import { withoutSeats } from './scene.mjs';
@@ -28,9 +29,11 @@ function stepAll(worlds, ticks) {
   return taken.user + taken.system;
 }
 
-function makeWorlds(contender, scene, count) {
+async function makeWorlds(contender, scene, count) {
+  const worlds = [];
   try {
-    return Array.from({ length: count }, () => contender.engine.make(scene));
+    while (worlds.length < count) worlds.push(await contender.engine.make(scene));
+    return worlds;
   } catch (error) {
     if (contender.engine.name === 'ours') throw error;
     contender.whyNot = error.message;
@@ -38,9 +41,9 @@ function makeWorlds(contender, scene, count) {
   }
 }
 
-function runOnce(scene, contenders, options) {
+async function runOnce(scene, contenders, options) {
   for (const contender of contenders) {
-    contender.worlds = makeWorlds(contender, scene, options.worlds);
+    contender.worlds = await makeWorlds(contender, scene, options.worlds);
     stepAll(contender.worlds, kWarmTicks);
   }
   for (let chunk = 0; chunk < kChunks; ++chunk)
@@ -78,13 +81,13 @@ function print(row) {
     `${accuracy.padStart(18)}  ${row.digest}\n`);
 }
 
-function measure(scene, engines, options) {
+async function measure(scene, engines, options) {
   const dimension = scene.dimension ?? 2;
   const contenders = engines
     .filter((engine) => engine.dimensions.includes(dimension))
     .map((engine) => ({ engine, chunks: Array.from({ length: kChunks }, () => []) }));
   options.ruler.rule(scene);
-  for (let run = 0; run < options.runs; ++run) runOnce(scene, contenders, options);
+  for (let run = 0; run < options.runs; ++run) await runOnce(scene, contenders, options);
   const rows = contenders.map(
     (contender) => rowOf(scene, contender, contenders[0], options.worlds));
   rows.forEach(print);
@@ -146,12 +149,12 @@ async function main(words) {
   }
   options.ruler = await Module.load(options.wasm);
   const engines = [ourEngine(options.ruler), await box2dEngine(), await rapierEngine(2),
-    await rapierEngine(3)];
+    await rapierEngine(3), await joltEngine()];
   const files = (await readdir(options.folder)).filter((file) => file.endsWith('.json')).sort();
   const rows = [];
   for (const file of files) {
     const text = await readFile(`${options.folder}/${file}`, 'utf8');
-    rows.push(...measure(withoutSeats(JSON.parse(text)), engines, options));
+    rows.push(...await measure(withoutSeats(JSON.parse(text)), engines, options));
   }
   await writeFile(options.csv, csvOf(rows));
   if (options.markdown !== undefined)

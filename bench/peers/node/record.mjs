@@ -8,6 +8,7 @@ import { readFile, writeFile } from 'node:fs/promises';
 import { argv, cpuUsage, exit, stderr } from 'node:process';
 import { parseArgs } from 'node:util';
 import { box2dEngine } from './box2d.mjs';
+import { joltEngine } from './jolt.mjs';
 import { Module, ourEngine } from './ours.mjs';
 import { rapierEngine } from './rapier.mjs';
 import { withoutSeats } from './scene.mjs';
@@ -18,6 +19,7 @@ async function makers(module) {
   const box2d = await box2dEngine();
   const planar = await rapierEngine(2);
   const spatial = await rapierEngine(3);
+  const jolt = await joltEngine();
   const substeps = (run) => ({ substeps: run.substeps });
   return new Map([
     ['ours', (scene) => ours.make(scene)],
@@ -26,6 +28,7 @@ async function makers(module) {
       (scene, run) => box2d.make(scene, { ...substeps(run), contact_hertz: 60 })],
     ['Rapier 2D', (scene, run) => planar.make(scene, substeps(run))],
     ['Rapier 3D', (scene, run) => spatial.make(scene, substeps(run))],
+    ['Jolt', (scene, run) => jolt.make(scene, substeps(run))],
   ]);
 }
 
@@ -64,7 +67,7 @@ async function recordAll(runs, folder, make) {
     const result = { times_ns: [] };
     results.push(result);
     try {
-      const world = make.get(run.engine)(scene, run);
+      const world = await make.get(run.engine)(scene, run);
       await writeFile(`${folder}/${run.record}`, record(world, run.ticks));
       if (world.digest !== undefined) result.digest = world.digest();
       world.free();
@@ -81,7 +84,7 @@ async function timeAll(runs, results, folder, make) {
   for (const [i, run] of runs.entries()) {
     if (results[i].why_not !== undefined) continue;
     const scene = withoutSeats(JSON.parse(await readFile(`${folder}/${run.file}`, 'utf8')));
-    const world = make.get(run.engine)(scene, run);
+    const world = await make.get(run.engine)(scene, run);
     results[i].times_ns.push(timeTicks(world, run.ticks));
     world.free();
   }
