@@ -6,7 +6,7 @@
 // module to the next.
 import initJolt from 'jolt-physics';
 import { constraintOf, Scratch, shapeOf } from './jolt_parts.mjs';
-import { filterOf, materialOf, rotationOf, stepSeconds, triple } from './scene.mjs';
+import { filterOf, filtersMeet, materialOf, rotationOf, stepSeconds, triple } from './scene.mjs';
 
 const kLayers = { fixed: 0, moving: 1 };  // Of bodies, and of the broad phase.
 const kKinds = { static: 'EMotionType_Static', kinematic: 'EMotionType_Kinematic',
@@ -18,11 +18,6 @@ function sharedOf(body, what, of) {
   if (new Set(all.map((each) => JSON.stringify(each))).size !== 1)
     throw new Error(`no body with other than one ${what} in this adapter for Jolt`);
   return all[0];
-}
-
-function filtersMeet(a, b) {
-  if (a.group !== 0 && a.group === b.group) return a.group > 0;
-  return (a.category & b.mask) !== 0 && (b.category & a.mask) !== 0;
 }
 
 /** The pairs of bodies, by number, that never meet: because of their filters, or of a joint. */

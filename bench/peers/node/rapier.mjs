@@ -1,82 +1,40 @@
 // Rapier, as its packages of the plane and of space that keep to one result everywhere, with their
 // defaults where nothing else is asked for: four iterations of its solver, which are substeps. The
-// limits of a cone-twist joint are left out there.
-import { filterOf, materialOf, rotationOf, stepSeconds, triple } from './scene.mjs';
+// limits and the friction of a cone-twist joint are left out there.
+import { addJoint, shapeOf, vector } from './rapier_parts.mjs';
+import { filterOf, filtersMeet, materialOf, rotationOf, stepSeconds, triple } from './scene.mjs';
 
-const vector = (spatial, [x, y, z]) => (spatial ? { x, y, z } : { x, y });
-
-function planarShape(rapier, shape) {
-  const points = (shape.points ?? []).flatMap((point) => triple(point).slice(0, 2));
-  switch (shape.kind ?? 'ball') {
-    case 'ball':
-      return rapier.ColliderDesc.ball(shape.radius).setTranslation(...(points.length ? points : [0, 0]));
-    case 'capsule': {
-      const [ax, ay, bx, by] = points;
-      const length = Math.hypot(bx - ax, by - ay);
-      return rapier.ColliderDesc.capsule(0.5 * length, shape.radius)
-        .setTranslation(0.5 * (ax + bx), 0.5 * (ay + by))
-        .setRotation(Math.atan2(by - ay, bx - ax) - 0.5 * Math.PI);
-    }
-    case 'polygon':
-      return shape.radius > 0
-        ? rapier.ColliderDesc.roundConvexHull(new Float32Array(points), shape.radius)
-        : rapier.ColliderDesc.convexHull(new Float32Array(points));
-    case 'chain':
-      return rapier.ColliderDesc.polyline(
-        new Float32Array(shape.loop ? [...points, points[0], points[1]] : points));
-    case 'half_space':
-      return new rapier.ColliderDesc(new rapier.HalfSpace(vector(false, triple(shape.normal))))
-        .setTranslation(...triple(shape.normal).slice(0, 2).map((n) => n * (shape.offset ?? 0)));
-    default:
-      throw new Error(`no ${shape.kind} in this adapter for Rapier`);
-  }
+/** The next larger number that has as many bits set. */
+function nextOfAsManyBits(number) {
+  const lowest = number & -number;
+  const carried = number + lowest;
+  return carried | (((number ^ carried) / lowest) >> 2);
 }
 
-function spatialShape(rapier, shape) {
-  const points = (shape.points ?? []).map(triple);
-  const middle = points[0] ?? [0, 0, 0];
-  switch (shape.kind ?? 'ball') {
-    case 'ball':
-      return rapier.ColliderDesc.ball(shape.radius).setTranslation(...middle);
-    case 'box': {
-      const [x, y, z, w] = shape.rotation ?? [0, 0, 0, 1];
-      return rapier.ColliderDesc.cuboid(...shape.half).setTranslation(...middle)
-        .setRotation({ x, y, z, w });
-    }
-    case 'capsule': {
-      const along = points[1].map((value, i) => value - points[0][i]);
-      const length = Math.hypot(...along);
-      // The turn from y to `along`; where they are opposite, about x.
-      const turn = along[1] <= -0.999999 * length ? [1, 0, 0, 0]
-        : [along[2], 0, -along[0], length + along[1]];
-      const size = Math.hypot(...turn);
-      const [x, y, z, w] = turn.map((value) => value / size);
-      return rapier.ColliderDesc.capsule(0.5 * length, shape.radius)
-        .setTranslation(...points[0].map((value, i) => value + 0.5 * along[i]))
-        .setRotation({ x, y, z, w });
-    }
-    case 'hull':
-      return rapier.ColliderDesc.convexHull(new Float32Array(points.flat()));
-    case 'half_space':
-      return new rapier.ColliderDesc(new rapier.HalfSpace(vector(true, triple(shape.normal))))
-        .setTranslation(...triple(shape.normal).map((n) => n * (shape.offset ?? 0)));
-    default:
-      throw new Error(`no ${shape.kind} in this adapter for Rapier`);
-  }
+/** For filters that each meet all, or all but themselves: half of the bits, in no other half. */
+function halvesOf(filters) {
+  let half = 0xff;
+  return filters.map((filter) => {
+    const apart = filters.filter((other) => !filtersMeet(filter, other));
+    if (apart.length === 0) return { is: 0xffff, meets: 0xffff };
+    if (apart.length > 1 || apart[0] !== filter || half > 0xffff)
+      throw new Error('no filters such as these in this adapter for Rapier');
+    const taken = { is: half, meets: 0xffff & ~half };
+    half = nextOfAsManyBits(half);
+    return taken;
+  });
 }
 
-function jointData(rapier, spatial, joint) {
-  const kind = joint.kind ?? 'revolute';
-  const a = vector(spatial, triple(joint.anchor_a));
-  const b = vector(spatial, triple(joint.anchor_b));
-  if (joint.motor === 'position' || joint.hertz > 0)
-    throw new Error('no springs and servos in this adapter for Rapier');
-  if (!spatial && kind === 'revolute') return rapier.JointData.revolute(a, b);
-  if (spatial && (kind === 'revolute' || kind === 'cone_twist'))
-    return rapier.JointData.spherical(a, b);
-  if (spatial && kind === 'hinge')
-    return rapier.JointData.revolute(a, b, vector(true, triple(joint.axis)));
-  throw new Error(`no ${kind} in this adapter for Rapier`);
+/** By filter, groups of Rapier, of 16 bits: exactly those meet whose filters do. */
+function groupsOf(scene) {
+  const shapes = scene.bodies.flatMap((body) => body.shapes ?? []);
+  const names = [...new Set(shapes.map((shape) => JSON.stringify(filterOf(shape))))];
+  const filters = names.map((name) => JSON.parse(name));
+  const bitsOf = (filter) => filters.reduce(
+    (bits, other, i) => bits | (filtersMeet(filter, other) ? 1 << i : 0), 0);
+  const groups = filters.length > 16 ? halvesOf(filters)
+    : filters.map((filter, i) => ({ is: 1 << i, meets: bitsOf(filter) }));
+  return new Map(groups.map(({ is, meets }, i) => [names[i], ((is << 16) | meets) >>> 0]));
 }
 
 /** The mass that a body says, spread as its shapes spread theirs. */
@@ -93,10 +51,13 @@ class RapierWorld {
     this.world = new rapier.World(vector(this.spatial, triple(scene.gravity)));
     this.world.timestep = stepSeconds(scene);
     if (settings.substeps !== undefined) this.world.numSolverIterations = settings.substeps;
-    // Of groups that must not meet themselves, each takes one of Rapier's 16 bits in turn.
+    this.groups = groupsOf(scene);
     this.bodies = scene.bodies.map((body) => this.#addBody(rapier, scene, body));
-    const byName = new Map(scene.bodies.map((body, i) => [body.name, this.bodies[i]]));
-    for (const joint of scene.joints ?? []) this.#addJoint(rapier, joint, byName);
+    const byName = new Map(scene.bodies.map(
+      (body, i) => [body.name, { scene: body, made: this.bodies[i] }]));
+    for (const joint of scene.joints ?? [])
+      addJoint(rapier, this.world, this.spatial, joint, byName.get(joint.body_a),
+        byName.get(joint.body_b));
   }
 
   #addBody(rapier, scene, body) {
@@ -120,28 +81,14 @@ class RapierWorld {
 
   #addShape(rapier, scene, shape, body) {
     const material = materialOf(scene, shape);
-    const filter = filterOf(shape);
-    const bit = filter.group < 0 ? 1 << ((-filter.group - 1) % 15 + 1) : filter.category & 0xffff;
-    const meets = filter.group < 0 ? 0xffff & ~bit : filter.mask & 0xffff;
-    const desc = (this.spatial ? spatialShape : planarShape)(rapier, shape)
+    const desc = shapeOf(rapier, this.spatial, shape)
       .setDensity(shape.density ?? 1)
-      .setFriction(Math.sqrt(material.friction * material.friction))
+      .setFriction(Math.sqrt(material.friction))
+      .setFrictionCombineRule(rapier.CoefficientCombineRule.Multiply)
       .setRestitution(material.restitution)
       .setRestitutionCombineRule(rapier.CoefficientCombineRule.Max)
-      .setCollisionGroups(((bit << 16) | meets) >>> 0);
+      .setCollisionGroups(this.groups.get(JSON.stringify(filterOf(shape))));
     return this.world.createCollider(desc, body);
-  }
-
-  #addJoint(rapier, joint, byName) {
-    const data = jointData(rapier, this.spatial, joint);
-    const made = this.world.createImpulseJoint(
-      data, byName.get(joint.body_a), byName.get(joint.body_b), true);
-    made.setContactsEnabled(joint.collide_connected ?? false);
-    if (made.setLimits === undefined) return;
-    if (joint.limit_enabled) made.setLimits(joint.lower ?? 0, joint.upper ?? 0);
-    if (joint.motor !== 'speed') return;
-    made.configureMotorModel(rapier.MotorModel.ForceBased);
-    made.configureMotorVelocity(joint.motor_speed ?? 0, joint.motor_max ?? 0);
   }
 
   step() {

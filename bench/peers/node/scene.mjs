@@ -15,6 +15,11 @@ export function filterOf(shape) {
   return { category: filter.category ?? 1, mask: filter.mask ?? 0xffffffff, group: filter.group ?? 0 };
 }
 
+export function filtersMeet(a, b) {
+  if (a.group !== 0 && a.group === b.group) return a.group > 0;
+  return (a.category & b.mask) !== 0 && (b.category & a.mask) !== 0;
+}
+
 /** A quaternion, whichever the dimension. */
 export function rotationOf(body) {
   if (body.rotation !== undefined) return body.rotation;
