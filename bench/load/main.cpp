@@ -51,7 +51,10 @@ Json to_json(ScenarioResult& result) {
           {"tick_mean_us", result.tick_mean_us},
           {"tick_p99_ms", result.tick_p99_ms},
           {"late_ms", {result.late_p50_ms, result.late_p99_ms, result.late_p999_ms}},
-          {"control_ms", {result.control_p50_ms, result.control_p99_ms, result.control_p999_ms}},
+          {"control_ms",
+           {result.control_p50_ms, result.control_p99_ms, result.control_p999_ms,
+            result.control_max_ms}},
+          {"control_behind", result.control_behind},
           {"groups", std::move(groups)}};
 }
 
@@ -65,9 +68,11 @@ void print(const Json& result) {
               number(result["cpu_us_per_tick"]), number(result["tick_mean_us"]));
   const Json& late = result["late_ms"];
   const Json& control = result["control_ms"];
-  std::printf("  late p50/p99/p99.9 <= %.2f/%.2f/%.2f ms, bare timer %.2f/%.2f/%.2f ms\n",
-              number(late[0]), number(late[1]), number(late[2]), number(control[0]),
-              number(control[1]), number(control[2]));
+  std::printf(
+      "  late p50/p99/p99.9 <= %.2f/%.2f/%.2f ms; bare timer %.2f/%.2f/%.2f ms, at most %.2f, "
+      "behind %.0f\n",
+      number(late[0]), number(late[1]), number(late[2]), number(control[0]), number(control[1]),
+      number(control[2]), number(control[3]), number(result["control_behind"]));
   for (const Json& group : result["groups"]) {
     std::printf(
         "  %-10s %5.0f of %5.0f joined, %4.0f closed; %.0f B an update, gap p99 %.1f ms; "
@@ -132,9 +137,11 @@ int run(int argc, char** argv) {
   std::vector<std::string> wanted;
   double seconds = 20.0;
   std::string json_file;
+  bool realtime = false;
   app.add_option("--program", program, "The cycloid to load")->required()->check(CLI::ExistingFile);
   app.add_option("--seconds", seconds, "Of each scenario")->check(CLI::PositiveNumber);
   app.add_option("--json", json_file, "Write the results here, too");
+  app.add_flag("--rt", realtime, "Have the server ask for real-time threads");
   app.add_option("SCENARIO", wanted, "Only these");
   CLI11_PARSE(app, argc, argv);
   for (const std::string& name : wanted) {
@@ -150,7 +157,7 @@ int run(int argc, char** argv) {
       continue;
     }
     std::printf("%s\n", scenario.what.c_str());
-    ScenarioResult result = run_scenario(scenario, program, seconds);
+    ScenarioResult result = run_scenario(scenario, program, seconds, realtime);
     const std::vector<std::string> failures = failures_of(result);
     all.push_back(to_json(result));
     all.back()["failures"] = failures;

@@ -144,7 +144,8 @@ class Crowd {
 
 }  // namespace
 
-ScenarioResult run_scenario(const Scenario& scenario, const std::string& program, double seconds) {
+ScenarioResult run_scenario(const Scenario& scenario, const std::string& program, double seconds,
+                            bool realtime) {
   const OwnFolder folder;
   const scenes::Scene scene = scene_of(scenario.scene);
   const std::filesystem::path scene_file = folder / "scene.json";
@@ -152,7 +153,9 @@ ScenarioResult run_scenario(const Scenario& scenario, const std::string& program
   const std::uint16_t operation_port = free_port();
   write_config(folder / "load.toml", scenario, scene_file.string(), operation_port);
 
-  ServerProcess server(program, {"serve", "--config", (folder / "load.toml").string()});
+  std::vector<std::string> words = {"serve", "--config", (folder / "load.toml").string()};
+  if (realtime) words.push_back("--rt");
+  ServerProcess server(program, words);
   Crowd crowd(scenario, server.port(), scenes::scene_digest(scene));
   crowd.run_for(kWarmUpS);
 
@@ -190,6 +193,9 @@ ScenarioResult run_scenario(const Scenario& scenario, const std::string& program
   result.control_p50_ms = control_ms.quantile(500);
   result.control_p99_ms = control_ms.quantile(990);
   result.control_p999_ms = control_ms.quantile(999);
+  result.control_max_ms = control_ms.quantile(1000);
+  result.control_behind =
+      static_cast<int>(control_ms.above(std::chrono::duration<double, std::milli>(kTick).count()));
   result.groups = crowd.stop();
   (void)server.stop();
   return result;

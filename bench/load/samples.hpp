@@ -2,11 +2,12 @@
 
 #include <algorithm>
 #include <cstddef>
-#include <vector>
+#include <deque>
 
 namespace cycloid::load {
 
-/// Measured times, kept whole, so that a quantile is one of them and not the edge of a bucket.
+/// Measured times, kept whole, so that a quantile is one of them and not the edge of a bucket. In
+/// pieces, because a vector of ten minutes stands still for its clients while it moves.
 class Samples {
  public:
   void add(double value) {
@@ -21,11 +22,16 @@ class Samples {
     const std::size_t at = (values_.size() * permille + 999) / 1000;
     return values_[std::min(values_.size(), std::max<std::size_t>(at, 1)) - 1];
   }
+  /// How many are above `bound`.
+  std::size_t above(double bound) const {
+    const auto is_above = [bound](double value) { return value > bound; };
+    return static_cast<std::size_t>(std::count_if(values_.begin(), values_.end(), is_above));
+  }
   std::size_t size() const { return values_.size(); }
   void clear() { values_.clear(); }
 
  private:
-  std::vector<double> values_;
+  std::deque<double> values_;
   bool sorted_ = false;
 };
 

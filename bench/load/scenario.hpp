@@ -56,6 +56,8 @@ struct ScenarioResult {
   double control_p50_ms = 0.0;  ///< A bare timer of the same rate in the same seconds.
   double control_p99_ms = 0.0;
   double control_p999_ms = 0.0;
+  double control_max_ms = 0.0;
+  int control_behind = 0;  ///< Of its ticks: began in the time of the next, as an overrun does.
   std::vector<GroupResult> groups;
 };
 
@@ -64,7 +66,9 @@ struct ScenarioResult {
 std::vector<std::string> failures_of(const ScenarioResult& result);
 
 /// Starts the server, connects the clients, waits for the warm-up, measures, ends the server.
-/// @param program  `cycloid`.
-ScenarioResult run_scenario(const Scenario& scenario, const std::string& program, double seconds);
+/// @param program   `cycloid`.
+/// @param realtime  Whether the server asks for real-time threads, `serve --rt`.
+ScenarioResult run_scenario(const Scenario& scenario, const std::string& program, double seconds,
+                            bool realtime);
 
 }  // namespace cycloid::load
