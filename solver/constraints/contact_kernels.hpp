@@ -39,7 +39,7 @@ struct ContactKernels {
   static void bounce(const StepContext<D>& context, const BlockRange<D, W>& range);
   /// v += M^-1 J^T lambda.
   static void warm_start(const BlockRange<D, W>& range);
-  /// What the warm start has left to do: ContactBlock::misses, stirs and slides.
+  /// What the warm start has left to do: ContactBlock::misses and stirs.
   static void look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
                             const BlockRange<D, W>& range);
   /// One sweep of sequential impulses.

@@ -1,0 +1,81 @@
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// How far a soft contact may give way under its load before its island is solved at once, m: a
+/// fifth of the slop. Twice as much loses the jammed ragdolls, five times as much the arch.
+static constexpr float kContactYield = 1.0e-3f;
+/// The same of a soft joint, m.
+static constexpr float kJointYield = 2.0e-3f;
+
+/// Whether what a pair carries, N s in every substep, would move a spring between its bodies by
+/// more than `bound`.
+template <int D>
+static bool yields(const BodyMass<D>& a, const BodyMass<D>& b, float load, float yield,
+                   float bound) {
+  return load * (a.inverse_mass + b.inverse_mass) * yield > bound;
+}
+
+template <int D, int W>
+static bool is_loaded(const StepContext<D>& context, const StepScratch<D>& scratch,
+                      const ContactBlock<D, W>& block, int lane) {
+  const BodyMass<D>& a = scratch.masses[block.body_a[lane]];
+  const BodyMass<D>& b = scratch.masses[block.body_b[lane]];
+  const bool both = a.inverse_mass > 0.0f && b.inverse_mass > 0.0f;
+  float load = 0.0f;
+  for (std::uint32_t p = 0; p < block.point_count; ++p)
+    load += block.points[p].normal_impulse.raw[lane];
+  return yields<D>(a, b, load, yield_of(both ? context.contact : context.contact_static),
+                   kContactYield);
+}
+
+/// Of the first rows alone: those hold a point together, and their impulses are forces.
+template <int D>
+static bool is_loaded(const StepContext<D>& context, const JointRow<D>& row) {
+  if (!is_held(row)) return false;
+  float square = 0.0f;
+  for (int i = 0; i < D; ++i) square += row.impulse[i] * row.impulse[i];
+  return yields<D>(row.mass_a, row.mass_b, sqrt(square), yield_of(context.joint), kJointYield);
+}
+
+/// Looks for what soft contacts and joints cannot hold up: with them overlap is load over frequency
+/// squared, whatever the number of substeps. The load is that of the last tick, which the state
+/// has.
+///
+/// Reads masses and the impulses of blocks and joint rows; writes the loaded slots, one of each
+/// such pair, and whether islands are solved at all in this tick. Serial; which slots there are
+/// does not depend on the order.
+template <int D, int W>
+void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  solver.loaded.clear();
+  solver.acts = context.tuning.contact_block == ContactBlockRows::kIsland;
+  if (solver.acts || !solves_islands(context.tuning)) return;
+  const auto add = [&](std::uint32_t a, std::uint32_t b) {
+    solver.loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
+  };
+  for (const auto& block : std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks)
+    for (int lane = 0; lane < kLaneCount<W>; ++lane)
+      if (block.contact[lane] != kNone && is_loaded<D, W>(context, scratch, block, lane))
+        add(block.body_a[lane], block.body_b[lane]);
+  for (const JointRow<D>& row : scratch.joint_rows)
+    if (is_loaded(context, row)) add(row.body_a, row.body_b);
+  solver.acts = !solver.loaded.empty();
+}
+
+template <int D, int W>
+struct InstantiateLoaded {
+  static constexpr auto kFind = &find_loaded<D, W>;
+};
+template struct InstantiateLoaded<2, 1>;
+template struct InstantiateLoaded<2, 4>;
+template struct InstantiateLoaded<2, 8>;
+template struct InstantiateLoaded<2, 16>;
+template struct InstantiateLoaded<2, kAvx2Lanes>;
+template struct InstantiateLoaded<3, 1>;
+template struct InstantiateLoaded<3, 4>;
+template struct InstantiateLoaded<3, 8>;
+template struct InstantiateLoaded<3, 16>;
+template struct InstantiateLoaded<3, kAvx2Lanes>;
+
+}  // namespace cycloid::solver
