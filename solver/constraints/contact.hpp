@@ -44,6 +44,7 @@ struct ContactBlock {
   LaneIndices<W> contact;
   LaneBits moves_a;  ///< Lanes whose body a has mass.
   LaneBits moves_b;
+  LaneBits loaded;   ///< Of islands: lanes whose load a soft contact would give way to (find_load).
   LaneBits misses;   ///< Of islands (contact_rest.hpp): lanes that the warm start left in motion,
   LaneBits stirs;    ///< or not quite at rest.
   LaneBits left;     ///< Of islands: lanes that are in none that is solved, for the whole tick.

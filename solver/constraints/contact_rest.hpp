@@ -14,6 +14,19 @@ template <int W>
   return bits;
 }
 
+/// Sets ContactBlock::loaded: by the impulses of the tick before, which all points share.
+template <int D, int W>
+[[gnu::always_inline]] inline void find_load(const LoadBounds& bounds, ContactBlock<D, W>& block) {
+  using L = Lanes<W>;
+  const L one(bounds.yield_static);
+  const L yield = select(block.mass_a.inverse_mass > L(0.0f),
+                         select(block.mass_b.inverse_mass > L(0.0f), L(bounds.yield), one), one);
+  L load(0.0f);
+  for (std::uint32_t p = 0; p < block.point_count; ++p) load += block.points[p].normal_impulse;
+  const L way = load * (block.mass_a.inverse_mass + block.mass_b.inverse_mass) * yield;
+  block.loaded = lanes_above_zero(way - L(bounds.most));
+}
+
 /// What a point misses of what it holds, by the natural map, m/s: 0 where a lane has no such point.
 /// The normal misses what it approaches too fast by, or parts by while its impulse could hold it;
 /// the tangents what they slide by where they could stick.

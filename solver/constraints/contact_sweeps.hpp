@@ -149,6 +149,12 @@ template <int D, int W>
 }
 
 template <int D, int W>
+void ContactKernels<D, W>::look_for_load(const LoadBounds& bounds, const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    find_load(bounds, *block);
+}
+
+template <int D, int W>
 void ContactKernels<D, W>::look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
                                          const BlockRange<D, W>& range) {
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {

@@ -124,7 +124,6 @@ class IslandSolver {
 
   BodyMatrix<D> matrix;
   std::vector<HeldPair> held;  ///< Contacts in the order of the colouring, then joints.
-  std::vector<HeldPair> held_before;
   std::vector<int> held_in;                ///< By held pair, its island; -1: left to the sweeps.
   std::vector<int> group_of;               ///< By held pair in an island: the first of its points'.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.

@@ -8,34 +8,15 @@ static constexpr float kContactYield = 1.0e-3f;
 /// The same of a soft joint, m.
 static constexpr float kJointYield = 2.0e-3f;
 
-/// Whether what a pair carries, N s in every substep, would move a spring between its bodies by
-/// more than `bound`.
-template <int D>
-static bool yields(const BodyMass<D>& a, const BodyMass<D>& b, float load, float yield,
-                   float bound) {
-  return load * (a.inverse_mass + b.inverse_mass) * yield > bound;
-}
-
-template <int D, int W>
-static bool is_loaded(const StepContext<D>& context, const StepScratch<D>& scratch,
-                      const ContactBlock<D, W>& block, int lane) {
-  const BodyMass<D>& a = scratch.masses[block.body_a[lane]];
-  const BodyMass<D>& b = scratch.masses[block.body_b[lane]];
-  const bool both = a.inverse_mass > 0.0f && b.inverse_mass > 0.0f;
-  float load = 0.0f;
-  for (std::uint32_t p = 0; p < block.point_count; ++p)
-    load += block.points[p].normal_impulse.raw[lane];
-  return yields<D>(a, b, load, yield_of(both ? context.contact : context.contact_static),
-                   kContactYield);
-}
-
-/// Of the first rows alone: those hold a point together, and their impulses are forces.
+/// Whether what a joint carries, N s in every substep, would move its spring by more than the
+/// bound. Of the first rows alone: those hold a point together, and their impulses are forces.
 template <int D>
 static bool is_loaded(const StepContext<D>& context, const JointRow<D>& row) {
   if (!is_held(row)) return false;
   float square = 0.0f;
   for (int i = 0; i < D; ++i) square += row.impulse[i] * row.impulse[i];
-  return yields<D>(row.mass_a, row.mass_b, sqrt(square), yield_of(context.joint), kJointYield);
+  const float inverse_mass = row.mass_a.inverse_mass + row.mass_b.inverse_mass;
+  return sqrt(square) * inverse_mass * yield_of(context.joint) > kJointYield;
 }
 
 /// Looks for what soft contacts and joints cannot hold up: with them overlap is load over frequency
@@ -54,10 +35,13 @@ void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
     solver.loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
   };
-  for (const auto& block : std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks)
-    for (int lane = 0; lane < kLaneCount<W>; ++lane)
-      if (block.contact[lane] != kNone && is_loaded<D, W>(context, scratch, block, lane))
-        add(block.body_a[lane], block.body_b[lane]);
+  const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  ContactKernels<D, W>::look_for_load(
+      {yield_of(context.contact), yield_of(context.contact_static), kContactYield},
+      block_range<D, W>(scratch, {0, static_cast<int>(blocks.size())}));
+  for (const ContactBlock<D, W>& block : blocks)
+    for (int lane = 0; lane < kLaneCount<W> && block.loaded >> lane != 0; ++lane)
+      if ((block.loaded >> lane & 1) != 0) add(block.body_a[lane], block.body_b[lane]);
   for (const JointRow<D>& row : scratch.joint_rows)
     if (is_loaded(context, row)) add(row.body_a, row.body_b);
   solver.acts = !solver.loaded.empty();

@@ -28,10 +28,13 @@ static bool moves(const StepScratch<D>& scratch, std::uint32_t slot) {
 template <int D, int W>
 static bool list_held(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  std::swap(solver.held, solver.held_before);
-  solver.held.clear();
+  bool same = solver.island_of.size() == scratch.masses.size();
+  std::size_t count = 0;
   const auto add = [&](std::uint32_t a, std::uint32_t b, int place, int lane, int points) {
-    solver.held.push_back({a, b, place, lane, points, moves(scratch, a), moves(scratch, b)});
+    const HeldPair pair{a, b, place, lane, points, moves(scratch, a), moves(scratch, b)};
+    if (count == solver.held.size()) solver.held.emplace_back();
+    same = same && solver.held[count] == pair;
+    solver.held[count++] = pair;
   };
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -46,9 +49,9 @@ static bool list_held(StepScratch<D>& scratch) {
     const JointRow<D>& row = scratch.joint_rows[i];
     if (is_held(row)) add(row.body_a, row.body_b, static_cast<int>(i), -1, 1);
   }
-  solver.held_before.reserve(solver.held.size());  // Whoever is filled next: no step asks for more.
-  const bool same_slots = solver.island_of.size() == scratch.masses.size();
-  return same_slots && solver.held == solver.held_before;
+  same = same && count == solver.held.size();
+  solver.held.resize(count);
+  return same;
 }
 
 /// Islands in the order of their lowest slots, their nodes in the order of the slots.
