@@ -82,8 +82,7 @@ struct Names<solver::ContactBlockRows> {
       {"none", solver::ContactBlockRows::kNone},
       {"normals", solver::ContactBlockRows::kNormals},
       {"normal_friction", solver::ContactBlockRows::kNormalFriction},
-      {"island", solver::ContactBlockRows::kIsland},
-      {"loaded_island", solver::ContactBlockRows::kLoadedIsland}};
+      {"island", solver::ContactBlockRows::kIsland}};
 };
 template <>
 struct Names<solver::JointSolver> {

@@ -248,10 +248,6 @@ enum class ContactBlockRows : std::uint32_t {
   kNormals,  ///< The normals of a manifold: every case of the linear complementarity problem.
   kNormalFriction,  ///< Normal and tangents of a point: separate, stick or slide.
   kIsland,  ///< All that push and stick in an island, with its rigid joints; only with kSoft.
-  /// The same where it is needed and costs little: of thin islands (stacks, chains, bridges,
-  /// arches) whose load would let a soft contact or joint give way. Elsewhere, and where the method
-  /// is not kSoft or joints are kDirect, it is kNone.
-  kLoadedIsland,
 };
 
 /// How the equality rows of joints are solved.
@@ -268,7 +264,7 @@ struct Tuning {
   std::uint32_t position_sweeps = 0;  ///< Of kNgs and kXpbd, and pseudo-velocity sweeps.
   Stabilisation stabilisation = Stabilisation::kSoft;
   Order order = Order::kColor;
-  ContactBlockRows contact_block = ContactBlockRows::kLoadedIsland;
+  ContactBlockRows contact_block = ContactBlockRows::kNone;
   JointSolver joint_solver = JointSolver::kIterated;
   float warm_starting = 1.0f;    ///< Share of the last impulses to start from: 0 to 1.
   float over_relaxation = 1.0f;  ///< Factor on each change of an impulse (SOR): above 0, below 2.
@@ -290,13 +286,8 @@ struct Tuning {
   std::uint32_t particle_sweeps = 2;
   float particle_damping = 0.0f;  ///< 1/s.
 
-  /// Small steps, one soft sweep and one relax sweep each: Soft Step, TGS-Soft (Catto 2024). The
-  /// default is the same, but for islands whose load it could not hold.
-  static Tuning soft_step() {
-    Tuning tuning;
-    tuning.contact_block = ContactBlockRows::kNone;
-    return tuning;
-  }
+  /// Small steps, one soft sweep and one relax sweep each: Soft Step, TGS-Soft (Catto 2024).
+  static Tuning soft_step() { return {}; }
   /// Projected Gauss-Seidel with Baumgarte's bias, as in Box2D Lite (Catto, GDC 2006).
   static Tuning pgs() { return classic(Stabilisation::kBaumgarte, 10, 0, 0); }
   /// Overlap leaves through velocities of its own, so that it adds no energy.
@@ -323,7 +314,6 @@ struct Tuning {
                         std::uint32_t position) {
     Tuning tuning;
     tuning.substeps = 1;
-    tuning.contact_block = ContactBlockRows::kNone;
     tuning.sweeps = sweeps;
     tuning.relax_sweeps = relax;
     tuning.position_sweeps = position;
@@ -331,14 +321,6 @@ struct Tuning {
     return tuning;
   }
 };
-
-/// Whether islands may be solved at once, all of them or those that are loaded.
-inline bool solves_islands(const Tuning& tuning) {
-  if (tuning.contact_block == ContactBlockRows::kIsland) return true;
-  return tuning.contact_block == ContactBlockRows::kLoadedIsland &&
-         tuning.stabilisation == Stabilisation::kSoft &&
-         tuning.joint_solver == JointSolver::kIterated;
-}
 
 /// Stated capacities. What would exceed one is refused with the name of the field.
 struct Limits {
