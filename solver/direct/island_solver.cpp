@@ -38,8 +38,10 @@ bool IslandSolver<D>::leaves_for_sweeps(const Island& island, Wide tolerance) co
   return false;
 }
 
-/// How much of the contacts' first guess is worth having, from 0 to 1: after a blow the impulses of
-/// the substep before are those of the blow. Leaves in `momentum_` the velocities that they are of.
+/// How much of the first guess is worth having, from 0 to 1: after a blow the impulses of the
+/// substep before are those of the blow, and what is wedged between a joint and its contacts keeps
+/// a stress that holds no load and, once it turns a little, throws it about. Leaves in `momentum_`
+/// the velocities that they are of.
 template <int D>
 Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses) {
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
@@ -48,7 +50,6 @@ Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyM
   bool any = false;
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    if (!group.is_contact) continue;
     for (int r = group.first; r < group.first + group.count; ++r) {
       const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
       if (row.impulse == 0.0) continue;
@@ -85,7 +86,7 @@ void IslandSolver<D>::weaken_guess(const Island& island, Wide share) {
     for (int r = group.first; r < group.first + group.count; ++r) {
       IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
       row.missing += along<D>(group, row, momentum_);
-      if (group.is_contact) row.impulse = share * row.impulse;
+      row.impulse = share * row.impulse;
     }
   }
 }
@@ -133,9 +134,29 @@ bool IslandSolver<D>::let_go(const Island& island) {
   return any;
 }
 
-/// Speeds that take overlap away from positions and stay in no velocity; what holds stays together.
+/// The share of a correction, at most 1, with which no body and no point of contact moves faster
+/// than `speed`: points tell of turns, and bodies of what no row looks along.
 template <int D>
-void IslandSolver<D>::correct_positions(Island& island) {
+Wide IslandSolver<D>::share_of_correction(const Island& island, Wide speed) const {
+  Wide most = speed;
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    for (int i = 0; i < D; ++i)
+      most = std::max(most, magnitude(correction[static_cast<std::size_t>(n)][i]));
+  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    if (!group.is_contact) continue;
+    for (int r = group.first; r < group.first + group.count; ++r)
+      most =
+          std::max(most, magnitude(along<D>(group, rows[static_cast<std::size_t>(r)], correction)));
+  }
+  return speed / most;
+}
+
+/// Speeds that take overlap away from positions and stay in no velocity; what holds stays together.
+/// What is wedged between contacts that are nearly parallel would go a metre for a millimetre of
+/// overlap, through all that does not hold it: then the whole island is corrected more slowly.
+template <int D>
+void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
   island.corrects = false;
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     correction[static_cast<std::size_t>(n)] = Vector::zero();
@@ -146,7 +167,11 @@ void IslandSolver<D>::correct_positions(Island& island) {
     island.corrects = true;
     push<D>(group, row, -row.stiffness * row.overlap, correction);
   }
-  if (island.corrects) matrix.solve(island.steps, correction);
+  if (!island.corrects) return;
+  matrix.solve(island.steps, correction);
+  const Wide share = share_of_correction(island, push_speed_max);
+  for (int n = island.nodes.begin; n < island.nodes.end && share < 1.0; ++n)
+    for (int i = 0; i < kFreedoms; ++i) correction[static_cast<std::size_t>(n)][i] *= share;
 }
 
 /// The most that any row of a joint misses, m/s or rad/s.
@@ -177,7 +202,7 @@ void IslandSolver<D>::forget_conflict(const Island& island) {
 
 template <int D>
 Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masses,
-                              std::span<const Motion<D>> motions) {
+                              std::span<const Motion<D>> motions, float push_speed_max) {
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     change[static_cast<std::size_t>(n)] = Vector::zero();
   solution_.resize(body_of.size());
@@ -198,7 +223,7 @@ Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masse
     }
     step = take(island, masses);
   }
-  correct_positions(island);
+  correct_positions(island, static_cast<Wide>(push_speed_max));
   forget_conflict(island);
   return step < kWholeStep ? Solved::kPartly : Solved::kWhole;
 }
@@ -206,8 +231,8 @@ Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masse
 template bool IslandSolver<2>::leaves_for_sweeps(const Island&, Wide) const;
 template bool IslandSolver<3>::leaves_for_sweeps(const Island&, Wide) const;
 template Solved IslandSolver<2>::solve(Island&, std::span<const BodyMass<2>>,
-                                       std::span<const Motion<2>>);
+                                       std::span<const Motion<2>>, float);
 template Solved IslandSolver<3>::solve(Island&, std::span<const BodyMass<3>>,
-                                       std::span<const Motion<3>>);
+                                       std::span<const Motion<3>>, float);
 
 }  // namespace cycloid::solver

@@ -144,9 +144,9 @@ class IslandSolver {
   IslandWork work;
 
   /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and
-  /// `correction`.
+  /// `correction`, with which nothing moves faster than `push_speed_max`, m/s.
   Solved solve(Island& island, std::span<const BodyMass<D>> masses,
-               std::span<const Motion<D>> motions);
+               std::span<const Motion<D>> motions, float push_speed_max);
   /// Whether a contact of a solved island still approaches, pulls or slides by more than this, m/s.
   bool leaves_for_sweeps(const Island& island, Wide tolerance) const;
 
@@ -162,7 +162,8 @@ class IslandSolver {
   bool hold_to_bounds(const Island& island, std::span<const BodyMass<D>> masses);
   Wide best_step(const Island& island) const;
   Wide take(const Island& island, std::span<const BodyMass<D>> masses);
-  void correct_positions(Island& island);
+  Wide share_of_correction(const Island& island, Wide speed) const;
+  void correct_positions(Island& island, Wide push_speed_max);
   Wide most_missing(const Island& island) const;
   void forget_conflict(const Island& island);
 

@@ -303,7 +303,8 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
       continue;
     }
     gather_island<D, W>(context, scratch, island);
-    const Solved solved = solver.solve(island, scratch.masses, scratch.motions);
+    const Solved solved =
+        solver.solve(island, scratch.masses, scratch.motions, context.tuning.push_speed_max);
     scatter_island<D, W>(scratch, island);
     const bool in_part = solved == Solved::kPartly;
     hand_over<D, W>(island, in_part,

@@ -37,7 +37,7 @@ struct BodyOnGround {
     row.stiffness = 1000.0f;
     solver.rows.push_back(row);
   }
-  Solved solve() { return solver.solve(island, masses, motions); }
+  Solved solve() { return solver.solve(island, masses, motions, 3.0f); }
 };
 
 TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
@@ -94,6 +94,22 @@ TEST(IslandSolver, LetsGoOfFrictionTooSmallToHaveADirection) {
     EXPECT_EQ(body.solver.rows[3].impulse, 0.0) << rest;
     EXPECT_NEAR(body.solver.change[0][1], 1.0, 2.0e-3) << rest;
   }
+}
+
+// Two smooth walls that lean by a hundredth, a millimetre into the body each: out of both is a long
+// way along them, which no row looks along.
+TEST(IslandSolver, PushesWhatIsWedgedNoFasterThanItsBound) {
+  BodyOnGround body;
+  body.solver.groups[0].count = body.solver.groups[1].count = 1;
+  for (const std::size_t normal : {0, 2}) {
+    body.solver.rows[normal].b[0] = 0.01;
+    body.solver.rows[normal].b[1] = normal == 0 ? 1.0 : -1.0;
+    body.solver.rows[normal].impulse = 1.0;
+    body.solver.rows[normal].overlap = -1.0;
+  }
+  EXPECT_EQ(body.solve(), Solved::kWhole);
+  EXPECT_TRUE(body.island.corrects);
+  EXPECT_NEAR(body.solver.correction[0][0], 3.0, 1.0e-6) << "unbounded it would be 17 m/s";
 }
 
 }  // namespace cycloid::solver

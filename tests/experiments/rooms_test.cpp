@@ -1,0 +1,68 @@
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+#include <string>
+#include <vector>
+
+#include "bench/trials/methods.hpp"
+#include "scenes/catalogue.hpp"
+#include "scenes/simulation.hpp"
+
+namespace cycloid::trials {
+
+/// Inputs that change at any tick, as people's do: each seat turns round about every 40 ticks,
+/// jumps or drops a box about every 60, and lets go soon after.
+static void change_inputs(std::mt19937& random, std::vector<scenes::SeatInput>& inputs) {
+  for (scenes::SeatInput& input : inputs) {
+    if (random() % 40 == 0) input.axes[0] = (random() & 1) != 0 ? 20000 : -20000;
+    if (random() % 60 == 0)
+      input.buttons = random() % 5 != 0 ? 1 : 3;
+    else if (random() % 6 == 0)
+      input.buttons = 0;
+  }
+}
+
+static std::vector<std::string> names() {
+  std::vector<std::string> names;
+  for (const Method& method : methods()) names.emplace_back(method.name);
+  return names;
+}
+
+static const solver::Tuning& tuning_of(const std::string& name) {
+  const auto found = std::find_if(methods().begin(), methods().end(),
+                                  [&](const Method& method) { return method.name == name; });
+  return found->tuning;
+}
+
+static std::string test_name(const testing::TestParamInfo<std::string>& method) {
+  std::string name = method.param;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+class PlayedRooms : public testing::TestWithParam<std::string> {};
+
+/// A trial is a scene that somebody thought of. What eight players wedge, throw and drop in a room
+/// of joints and of things that bounce, nobody does: no body may leave the bounds of the world.
+TEST_P(PlayedRooms, NoWorldFaults) {
+  constexpr unsigned kRooms = 8;
+  constexpr int kTicks = 1800;
+  scenes::Scene scene = *scenes::find("room:bodies=64").scene;
+  scene.tuning = with_method(scene.tuning, tuning_of(GetParam()));
+  for (unsigned room = 1; room <= kRooms; ++room) {
+    solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
+    ASSERT_TRUE(simulation.ok()) << simulation.error().field;
+    std::mt19937 random(room);
+    std::vector<scenes::SeatInput> inputs(simulation.value().seats());
+    for (int tick = 1; tick <= kTicks; ++tick) {
+      change_inputs(random, inputs);
+      const solver::Error error = simulation.value().step(inputs);
+      ASSERT_TRUE(error.ok()) << "room " << room << ", tick " << tick << ": " << error.field;
+    }
+  }
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, PlayedRooms, testing::ValuesIn(names()), test_name);
+
+}  // namespace cycloid::trials
