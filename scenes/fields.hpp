@@ -82,7 +82,8 @@ struct Names<solver::ContactBlockRows> {
       {"none", solver::ContactBlockRows::kNone},
       {"normals", solver::ContactBlockRows::kNormals},
       {"normal_friction", solver::ContactBlockRows::kNormalFriction},
-      {"island", solver::ContactBlockRows::kIsland}};
+      {"island", solver::ContactBlockRows::kIsland},
+      {"loaded_island", solver::ContactBlockRows::kLoadedIsland}};
 };
 template <>
 struct Names<solver::JointSolver> {

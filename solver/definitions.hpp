@@ -248,6 +248,10 @@ enum class ContactBlockRows : std::uint32_t {
   kNormals,  ///< The normals of a manifold: every case of the linear complementarity problem.
   kNormalFriction,  ///< Normal and tangents of a point: separate, stick or slide.
   kIsland,  ///< All that push and stick in an island, with its rigid joints; only with kSoft.
+  /// The same where it is needed and costs little: of thin islands (stacks, chains, bridges,
+  /// arches) whose load would let a soft contact or joint give way. Elsewhere, and where the method
+  /// is not kSoft or joints are kDirect, it is kNone.
+  kLoadedIsland,
 };
 
 /// How the equality rows of joints are solved.
@@ -288,6 +292,12 @@ struct Tuning {
 
   /// Small steps, one soft sweep and one relax sweep each: Soft Step, TGS-Soft (Catto 2024).
   static Tuning soft_step() { return {}; }
+  /// The same, but for thin islands whose load it could not hold.
+  static Tuning soft_loaded() {
+    Tuning tuning;
+    tuning.contact_block = ContactBlockRows::kLoadedIsland;
+    return tuning;
+  }
   /// Projected Gauss-Seidel with Baumgarte's bias, as in Box2D Lite (Catto, GDC 2006).
   static Tuning pgs() { return classic(Stabilisation::kBaumgarte, 10, 0, 0); }
   /// Overlap leaves through velocities of its own, so that it adds no energy.
@@ -321,6 +331,14 @@ struct Tuning {
     return tuning;
   }
 };
+
+/// Whether islands may be solved at once, all of them or those that are loaded.
+inline bool solves_islands(const Tuning& tuning) {
+  if (tuning.contact_block == ContactBlockRows::kIsland) return true;
+  return tuning.contact_block == ContactBlockRows::kLoadedIsland &&
+         tuning.stabilisation == Stabilisation::kSoft &&
+         tuning.joint_solver == JointSolver::kIterated;
+}
 
 /// Stated capacities. What would exceed one is refused with the name of the field.
 struct Limits {

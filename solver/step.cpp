@@ -202,7 +202,7 @@ static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch
   // A product of blocks has as many terms as a row and its impulse in the plane, eight times as
   // many in space: else islands at once would look cheaper than they are.
   constexpr std::uint64_t kTimesPlanar = Dim<D>::kFreedoms / Dim<2>::kFreedoms;
-  if (tuning.contact_block == ContactBlockRows::kIsland)
+  if (solves_islands(tuning))
     statistics.rows +=
         scratch.islands_solved.work.products * kTimesPlanar * kTimesPlanar * kTimesPlanar;
 }

@@ -11,7 +11,7 @@ Error validate(const Tuning& t) {
     return invalid("substeps");
   if (t.stabilisation > Stabilisation::kXpbd) return invalid("stabilisation");
   if (t.order > Order::kReverse) return invalid("order");
-  if (t.contact_block > ContactBlockRows::kIsland) return invalid("contact_block");
+  if (t.contact_block > ContactBlockRows::kLoadedIsland) return invalid("contact_block");
   if (t.contact_block == ContactBlockRows::kIsland && t.stabilisation != Stabilisation::kSoft)
     return invalid("contact_block");
   if (t.joint_solver > JointSolver::kDirect) return invalid("joint_solver");

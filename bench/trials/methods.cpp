@@ -25,8 +25,9 @@ static Tuning islands() {
 }
 
 std::span<const Method> methods() {
-  static const std::array<Method, 11> kMethods = {{
+  static const std::array<Method, 12> kMethods = {{
       {"soft-step", Tuning::soft_step()},
+      {"soft-loaded", Tuning::soft_loaded()},
       {"soft-direct", direct()},
       {"soft-coupled", coupled()},
       {"soft-islands", islands()},

@@ -12,7 +12,7 @@ struct Method {
   solver::Tuning tuning;
 };
 
-/// Eleven of them, in the order of the columns of docs/stability.md.
+/// Twelve of them, in the order of the columns of docs/stability.md.
 std::span<const Method> methods();
 
 /// What a scene says of the world (thresholds, sleep, continuous collision) with the method's way

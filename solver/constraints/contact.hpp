@@ -44,9 +44,9 @@ struct ContactBlock {
   LaneIndices<W> contact;
   LaneBits moves_a;  ///< Lanes whose body a has mass.
   LaneBits moves_b;
+  LaneBits loaded;   ///< Of islands: lanes whose load a soft contact would give way to (find_load).
   LaneBits misses;   ///< Of islands (contact_rest.hpp): lanes that the warm start left in motion,
-  LaneBits stirs;    ///< not quite at rest,
-  LaneBits slides;   ///< sliding.
+  LaneBits stirs;    ///< or not quite at rest.
   LaneBits left;     ///< Of islands: lanes that are in none that is solved, for the whole tick.
   LaneBits settled;  ///< Of islands: lanes that biased sweeps pass by.
   std::uint32_t placed;       ///< Which poses the arms are of (StepScratch::poses); 0: of none.

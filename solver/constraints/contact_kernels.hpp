@@ -21,6 +21,13 @@ struct RestBounds {
   float overlap;  ///< Of what overlaps, the speed that it is to be moved apart by.
 };
 
+/// Of what is solved at once because springs would give way.
+struct LoadBounds {
+  float yield;         ///< yield_of the spring between two bodies that move, s.
+  float yield_static;  ///< Of that against one that does not.
+  float most;          ///< m.
+};
+
 /// What is done to contacts in lanes, compiled for each width: contact_kernels.cpp and
 /// contact_kernels_avx2.cpp, from one text (contact_sweeps.hpp). Units of other files only call.
 template <int D, int W>
@@ -39,7 +46,10 @@ struct ContactKernels {
   static void bounce(const StepContext<D>& context, const BlockRange<D, W>& range);
   /// v += M^-1 J^T lambda.
   static void warm_start(const BlockRange<D, W>& range);
-  /// What the warm start has left to do: ContactBlock::misses, stirs and slides.
+  /// Which lanes carry more than springs of so much yield (yield_of) hold within `most`, m:
+  /// ContactBlock::loaded.
+  static void look_for_load(const LoadBounds& bounds, const BlockRange<D, W>& range);
+  /// What the warm start has left to do: ContactBlock::misses and stirs.
   static void look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
                             const BlockRange<D, W>& range);
   /// One sweep of sequential impulses.

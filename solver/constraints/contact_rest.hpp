@@ -14,26 +14,34 @@ template <int W>
   return bits;
 }
 
-/// What a point misses of what it holds, by the natural map: 0 where a lane has no such point.
-template <int W>
-struct PointRest {
-  Lanes<W> missing;  ///< m/s, by what pushes or sticks.
-  Lanes<W> sliding;  ///< m/s, by what slides under load.
-};
-
-/// The normal misses what it approaches too fast by, or parts by while its impulse could hold it.
+/// Sets ContactBlock::loaded: by the impulses of the tick before, which all points share.
 template <int D, int W>
-[[gnu::always_inline]] inline PointRest<W> rest_of(const StepContext<D>& context,
-                                                   const ContactBlock<D, W>& block,
-                                                   const typename ContactBlock<D, W>::Point& point,
-                                                   const MotionLanes<D, W>& a,
-                                                   const MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline void find_load(const LoadBounds& bounds, ContactBlock<D, W>& block) {
+  using L = Lanes<W>;
+  const L one(bounds.yield_static);
+  const L yield = select(block.mass_a.inverse_mass > L(0.0f),
+                         select(block.mass_b.inverse_mass > L(0.0f), L(bounds.yield), one), one);
+  L load(0.0f);
+  for (std::uint32_t p = 0; p < block.point_count; ++p) load += block.points[p].normal_impulse;
+  const L way = load * (block.mass_a.inverse_mass + block.mass_b.inverse_mass) * yield;
+  block.loaded = lanes_above_zero(way - L(bounds.most));
+}
+
+/// What a point misses of what it holds, by the natural map, m/s: 0 where a lane has no such point.
+/// The normal misses what it approaches too fast by, or parts by while its impulse could hold it;
+/// the tangents what they slide by where they could stick.
+template <int D, int W>
+[[gnu::always_inline]] inline Lanes<W> missing_of(const StepContext<D>& context,
+                                                  const ContactBlock<D, W>& block,
+                                                  const typename ContactBlock<D, W>::Point& point,
+                                                  const MotionLanes<D, W>& a,
+                                                  const MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   const auto exists = point.normal_mass > L(0.0f);
   const L until = select(point.gap > L(0.0f), point.gap * L(context.inverse_h), L(0.0f));
   const L speed = relative_speed(block.normal, point.arms, a, b) + until;
   const L held = point.normal_impulse / select(exists, point.normal_mass, L(1.0f));
-  PointRest<W> rest{select(speed > L(0.0f), min(speed, held), -speed), L(0.0f)};
+  L missing = select(speed > L(0.0f), min(speed, held), -speed);
   if (block.rubs) {
     const L bound = block.friction * point.normal_impulse;
     L square(0.0f);
@@ -44,16 +52,12 @@ template <int D, int W>
       square += natural * natural;
       fastest = max(fastest, max(along, -along));
     }
-    const auto sticks = square < bound * bound;
-    rest.missing = max(rest.missing, select(sticks, fastest, L(0.0f)));
-    rest.sliding = select(sticks, L(0.0f), select(bound > L(0.0f), fastest, L(0.0f)));
+    missing = max(missing, select(square < bound * bound, fastest, L(0.0f)));
   }
-  rest.missing = select(exists, rest.missing, L(0.0f));
-  rest.sliding = select(exists, rest.sliding, L(0.0f));
-  return rest;
+  return select(exists, missing, L(0.0f));
 }
 
-/// Sets ContactBlock::misses, stirs and slides by what the warm start has led to.
+/// Sets ContactBlock::misses and stirs by what the warm start has led to.
 template <int D, int W>
 [[gnu::always_inline]] inline void find_rest(const StepContext<D>& context,
                                              const RestBounds& bounds, const MotionLanes<D, W>& a,
@@ -65,19 +69,15 @@ template <int D, int W>
       select(block.mass_a.inverse_mass > L(0.0f),
              select(block.mass_b.inverse_mass > L(0.0f), L(context.contact.bias_rate), one), one);
   L missing(0.0f);
-  L sliding(0.0f);
   L deepest(0.0f);
   for (std::uint32_t p = 0; p < block.point_count; ++p) {
     const auto& point = block.points[p];
-    const PointRest<W> rest = rest_of(context, block, point, a, b);
-    missing = max(missing, rest.missing);
-    sliding = max(sliding, rest.sliding);
+    missing = max(missing, missing_of(context, block, point, a, b));
     deepest = max(deepest, -(point.gap + L(context.tuning.slop)));
   }
   const L overlap = rate * deepest - L(bounds.overlap);
   block.misses = lanes_above_zero(max(missing - L(bounds.misses), overlap));
   block.stirs = lanes_above_zero(max(missing - L(bounds.stirs), overlap));
-  block.slides = lanes_above_zero(sliding - L(bounds.misses));
 }
 
 /// One biased sweep over the lanes that are not settled. A lane that is keeps every bit, so that

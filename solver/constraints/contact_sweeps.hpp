@@ -149,6 +149,12 @@ template <int D, int W>
 }
 
 template <int D, int W>
+void ContactKernels<D, W>::look_for_load(const LoadBounds& bounds, const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    find_load(bounds, *block);
+}
+
+template <int D, int W>
 void ContactKernels<D, W>::look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
                                          const BlockRange<D, W>& range) {
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
@@ -162,7 +168,7 @@ void ContactKernels<D, W>::look_for_rest(const StepContext<D>& context, const Re
 template <Sweep kSweep, int D, int W>
 void sweep_blocks(const StepContext<D>& context, const BlockRange<D, W>& range) {
   const ContactBlockRows together = context.tuning.contact_block;
-  const bool apart = together == ContactBlockRows::kNone || together == ContactBlockRows::kIsland;
+  const bool apart = together == ContactBlockRows::kNone || together >= ContactBlockRows::kIsland;
   const bool plain = kSweep != Sweep::kPseudo && apart;
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
     if (kSweep == Sweep::kBiased && block->settled != 0) {

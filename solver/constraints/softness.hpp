@@ -12,6 +12,13 @@ struct Softness {
   float impulse_scale;
 };
 
+/// How far a row of effective mass 1 gives way for good under an impulse of 1 in every substep, s:
+/// 1 / (h omega^2); 0 of what is rigid.
+inline float yield_of(const Softness& softness) {
+  if (softness.impulse_scale == 0.0f) return 0.0f;
+  return softness.impulse_scale / (softness.mass_scale * softness.bias_rate);
+}
+
 inline constexpr Softness kRigid = {0.0f, 1.0f, 0.0f};
 
 /// bias = (beta / h) C. Source: Baumgarte (1972), as in Catto, GDC 2006.

@@ -102,6 +102,7 @@ class IslandSolver {
     int pairs;                   ///< Contacts and joints.
     float mass;                  ///< Of the heaviest body, kg.
     float inertia;               ///< The greatest, kg m^2.
+    bool taken;                  ///< Solved at once in this tick; else the sweeps have it.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
     bool stirred;   ///< The substep before had to solve it.
     bool corrects;  ///< `correction` of its nodes is not 0.
@@ -122,8 +123,7 @@ class IslandSolver {
   };
 
   BodyMatrix<D> matrix;
-  std::vector<HeldPair> held;  ///< Contacts in the order of the colouring, then joints.
-  std::vector<HeldPair> held_before;
+  std::vector<HeldPair> held;              ///< Contacts in the order of the colouring, then joints.
   std::vector<int> held_in;                ///< By held pair, its island; -1: left to the sweeps.
   std::vector<int> group_of;               ///< By held pair in an island: the first of its points'.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.
@@ -141,6 +141,10 @@ class IslandSolver {
   std::vector<int> island_of;              ///< By slot, then by group while they are listed.
   std::vector<Vector> change;              ///< By node: of the velocity, m/s and rad/s.
   std::vector<Vector> correction;          ///< By node: speed for positions alone.
+  std::vector<std::uint32_t> loaded;       ///< Slots of bodies whose load calls for this solver.
+  bool acts = false;                       ///< In this tick, on some island.
+  bool planned = false;                    ///< What holds has its islands' plans and groups.
+  bool only_thin = false;                  ///< What was planned holds for thin islands alone.
   IslandWork work;
 
   /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and

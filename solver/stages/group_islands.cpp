@@ -12,6 +12,11 @@ static constexpr int kProductsPerPair = 128;
 /// what is large may be solved when it is disturbed, and not in all rounds of every substep.
 static constexpr int kProductsPerPairAndTick = 960;
 
+/// Pairs in each body of an island that is thin, and beyond them: so it costs little to factor. A
+/// stack, a bridge and an arch have as many pairs as bodies, heaps and nets twice as many.
+static constexpr float kThinPairsPerBody = 1.25f;
+static constexpr int kThinPairsMore = 2;
+
 template <int D>
 static bool moves(const StepScratch<D>& scratch, std::uint32_t slot) {
   return scratch.masses[slot].inverse_mass > 0.0f && scratch.awake[slot] != 0;
@@ -23,10 +28,13 @@ static bool moves(const StepScratch<D>& scratch, std::uint32_t slot) {
 template <int D, int W>
 static bool list_held(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  std::swap(solver.held, solver.held_before);
-  solver.held.clear();
+  bool same = solver.island_of.size() == scratch.masses.size();
+  std::size_t count = 0;
   const auto add = [&](std::uint32_t a, std::uint32_t b, int place, int lane, int points) {
-    solver.held.push_back({a, b, place, lane, points, moves(scratch, a), moves(scratch, b)});
+    const HeldPair pair{a, b, place, lane, points, moves(scratch, a), moves(scratch, b)};
+    if (count == solver.held.size()) solver.held.emplace_back();
+    same = same && solver.held[count] == pair;
+    solver.held[count++] = pair;
   };
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   for (std::size_t i = 0; i < blocks.size(); ++i) {
@@ -41,8 +49,9 @@ static bool list_held(StepScratch<D>& scratch) {
     const JointRow<D>& row = scratch.joint_rows[i];
     if (is_held(row)) add(row.body_a, row.body_b, static_cast<int>(i), -1, 1);
   }
-  const bool same_slots = solver.node_of.size() == scratch.masses.size();
-  return same_slots && solver.held == solver.held_before;
+  same = same && count == solver.held.size();
+  solver.held.resize(count);
+  return same;
 }
 
 /// Islands in the order of their lowest slots, their nodes in the order of the slots.
@@ -71,6 +80,15 @@ static void find_islands(StepScratch<D>& scratch) {
     }
     solver.island_of[slot] = solver.island_of[root];
     ++solver.islands[static_cast<std::size_t>(solver.island_of[root])].nodes.end;
+  }
+}
+
+template <int D>
+static void count_pairs(IslandSolver<D>& solver) {
+  for (const HeldPair& pair : solver.held) {
+    if (!pair.a_moves && !pair.b_moves) continue;
+    const std::uint32_t slot = pair.a_moves ? pair.a : pair.b;
+    ++solver.islands[static_cast<std::size_t>(solver.island_of[slot])].pairs;
   }
 }
 
@@ -107,10 +125,15 @@ static bool list_pairs(IslandSolver<D>& solver) {
     const int a = solver.node_of[pair.a];
     const int b = solver.node_of[pair.b];
     solver.pairs.push_back({a, b});
-    if (a < 0 && b < 0) continue;
-    ++solver.islands[static_cast<std::size_t>(solver.island_of[a >= 0 ? pair.a : pair.b])].pairs;
   }
+  solver.pairs_before.reserve(solver.pairs.size());
   return solver.pairs == solver.pairs_before;
+}
+
+template <int D>
+static bool is_thin(const typename IslandSolver<D>::Island& island) {
+  const auto bodies = static_cast<float>(island.nodes.end - island.nodes.begin);
+  return island.pairs <= static_cast<int>(kThinPairsPerBody * bodies) + kThinPairsMore;
 }
 
 /// Joins the nodes and plans each island; lets go of those that would cost too much.
@@ -124,6 +147,8 @@ static void plan_islands(IslandSolver<D>& solver) {
   for (const auto& island : solver.islands) {
     auto& plan = solver.plans.emplace_back();
     const std::uint64_t before = solver.matrix.products();
+    plan = {false, {0, 0}, 0};
+    if (solver.only_thin && !is_thin<D>(island)) continue;
     plan.taken = solver.matrix.analyse(island.nodes, kProductsPerPair * island.pairs, plan.steps);
     plan.products = static_cast<int>(solver.matrix.products() - before);
   }
@@ -204,6 +229,7 @@ static void begin_islands(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   for (auto& island : solver.islands) {
     island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
+    island.taken = !solver.only_thin && island.groups.begin < island.groups.end;
     island.swept = island.stirred = island.corrects = false;
     island.mass = island.inertia = 0.0f;
     for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
@@ -216,23 +242,62 @@ static void begin_islands(StepScratch<D>& scratch) {
   }
 }
 
+/// Whether any island is to be solved, before it is planned. @pre find_islands and count_pairs.
+template <int D>
+static bool any_wanted(const IslandSolver<D>& solver) {
+  if (!solver.only_thin) return true;
+  return std::any_of(solver.loaded.begin(), solver.loaded.end(), [&](std::uint32_t slot) {
+    const int at = solver.island_of[slot];
+    return at >= 0 && is_thin<D>(solver.islands[static_cast<std::size_t>(at)]);
+  });
+}
+
+/// Takes the islands of loaded bodies. @pre begin_islands.
+template <int D>
+static void take_loaded(IslandSolver<D>& solver) {
+  for (const std::uint32_t slot : solver.loaded) {
+    if (solver.island_of[slot] < 0) continue;
+    auto& island = solver.islands[static_cast<std::size_t>(solver.island_of[slot])];
+    island.taken = island.groups.begin < island.groups.end;
+  }
+}
+
+/// Forgets what is kept of islands where the tuning asks for other islands than it was made for.
+template <int D>
+static void begin_grouping(const Tuning& tuning, IslandSolver<D>& solver) {
+  const bool only_thin = tuning.contact_block == ContactBlockRows::kLoadedIsland;
+  if (solver.only_thin == only_thin) return;
+  solver.only_thin = only_thin;
+  solver.held.clear();
+  solver.pairs.clear();
+  solver.island_of.clear();
+}
+
 /// Sorts what touches or is jointed into islands and plans how each is solved at once. What holds
 /// the same as in the tick before is sorted as it was: a cache, which changes no bit.
 ///
-/// Reads contact blocks, joint rows and masses; writes the island solver. Serial, in the order of
-/// the colouring and of the slots.
+/// Reads contact blocks, joint rows, masses and which bodies are loaded; writes the island solver.
+/// Serial, in the order of the colouring and of the slots.
 template <int D, int W>
-void group_islands(StepScratch<D>& scratch) {
+void group_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
+  begin_grouping(context.tuning, solver);
   if (!list_held<D, W>(scratch)) {
     find_islands(scratch);
+    count_pairs(solver);
+    solver.planned = false;
+  }
+  solver.acts = any_wanted(solver);
+  if (!solver.acts) return;
+  if (!solver.planned) {
     number_nodes(scratch);
     if (!list_pairs(solver)) plan_islands(solver);
     follow_plans(solver);
     list_groups(solver);
+    solver.planned = true;
   }
   begin_islands(scratch);
-  solver.work = {};
+  take_loaded(solver);
 }
 
 template <int D, int W>

@@ -40,7 +40,7 @@ static void find_swept(StepScratch<D>& scratch) {
     if (pair.lane < 0) break;
     auto& block = blocks[static_cast<std::size_t>(pair.place)];
     const int at = solver.held_in[i];
-    if (at < 0)
+    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken)
       block.left |= LaneBits{1} << pair.lane;
     else if (is_swept(block, pair.lane))
       solver.islands[static_cast<std::size_t>(at)].swept = true;
@@ -66,7 +66,8 @@ static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
   auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   const float touch = kTouch * context.tuning.slop;
   for (std::size_t i = 0; i < solver.held.size(); ++i) {
-    if (solver.held_in[i] < 0) continue;
+    const int at = solver.held_in[i];
+    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken) continue;
     const HeldPair& pair = solver.held[i];
     const auto place = static_cast<std::size_t>(pair.place);
     if (pair.lane < 0) {
@@ -92,8 +93,12 @@ static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
 /// contacts that it takes and which joint rows it takes. Serial.
 template <int D, int W>
 void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
-  if (context.tuning.contact_block != ContactBlockRows::kIsland) return;
-  group_islands<D, W>(scratch);
+  IslandSolver<D>& solver = scratch.islands_solved;
+  solver.work = {};
+  find_loaded<D, W>(context, scratch);
+  if (!solver.acts) return;
+  group_islands<D, W>(context, scratch);
+  if (!solver.acts) return;
   find_swept<D, W>(scratch);
   take_rows<D, W>(context, scratch);
 }

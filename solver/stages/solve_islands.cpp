@@ -214,7 +214,6 @@ static bool misses(const StepContext<D>& context, const StepScratch<D>& scratch,
 struct Unrest {
   LaneBits misses = 0;
   LaneBits stirs = 0;
-  LaneBits slides = 0;
 };
 
 /// Nothing is settled yet but what belongs to no island.
@@ -225,35 +224,28 @@ static Unrest begin_settling(ContactBlocks<D, W>& contacts) {
     block.settled = kAllLanes<W> & ~block.left;
     all.misses |= block.misses;
     all.stirs |= block.stirs;
-    all.slides |= block.slides;
   }
   return all;
 }
 
-/// What the warm start has left of an island. @pre look_for_rest.
-struct Remainder {
-  bool misses;
-  bool slides;
-};
+/// Whether the warm start has left anything to do in an island. @pre look_for_rest.
 template <int D, int W>
-static Remainder remainder_of(const StepContext<D>& context, const StepScratch<D>& scratch,
-                              const Unrest& all, const typename IslandSolver<D>::Island& island) {
+static bool is_restless(const StepContext<D>& context, const StepScratch<D>& scratch,
+                        const Unrest& all, const typename IslandSolver<D>::Island& island) {
   const IslandSolver<D>& solver = scratch.islands_solved;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const float bound = island.stirred ? kRest.stirs : kRest.misses;
-  Remainder left{};
-  const bool looks = ((island.stirred ? all.stirs : all.misses) | all.slides) != 0;
-  for (int g = island.groups.begin; g < island.joints.begin && looks && !left.misses; ++g) {
+  const bool looks = (island.stirred ? all.stirs : all.misses) != 0;
+  for (int g = island.groups.begin; g < island.joints.begin && looks; ++g) {
     const auto& source = solver.sources[static_cast<std::size_t>(g)];
     const auto& block = blocks[static_cast<std::size_t>(source.place)];
-    left.misses = ((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0;
-    left.slides = left.slides || (block.slides >> source.lane & 1) != 0;
+    if (((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0) return true;
   }
-  for (int g = island.joints.begin; g < island.joints.end && !left.misses; ++g) {
+  const float bound = island.stirred ? kRest.stirs : kRest.misses;
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
-    left.misses = misses(context, scratch, scratch.joint_rows[place], bound);
+    if (misses(context, scratch, scratch.joint_rows[place], bound)) return true;
   }
-  return left;
+  return false;
 }
 
 /// Tells the sweeps what is left to them of an island.
@@ -272,45 +264,55 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
   }
 }
 
+/// Solves one island from where the warm start has led, or leaves it to the sweeps for what is left
+/// of this tick where it has cost too much.
+template <int D, int W>
+static void solve_island(const StepContext<D>& context, StepScratch<D>& scratch,
+                         typename IslandSolver<D>::Island& island) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  if (island.products_left <= 0) return hand_over<D, W>(island, true, true, scratch);
+  gather_island<D, W>(context, scratch, island);
+  const Solved solved =
+      solver.solve(island, scratch.masses, scratch.motions, context.tuning.push_speed_max);
+  scatter_island<D, W>(scratch, island);
+  const bool in_part = solved == Solved::kPartly;
+  hand_over<D, W>(island, in_part,
+                  in_part || island.swept || solver.leaves_for_sweeps(island, kRest.misses),
+                  scratch);
+}
+
 /// Solves the islands that are small enough at once, from where the warm start has led, and leaves
-/// those alone that it has brought to rest. What is solved, and what rests without sliding, biased
-/// sweeps pass by; what was solved in part is left to soft sweeps as well, for joints cannot wait.
+/// to the sweeps what it has brought to rest: a stack leans by less than an island misses at rest,
+/// and only they take that back. What is solved, biased sweeps pass by; what was solved in part is
+/// left to soft sweeps as well, for joints cannot wait.
 ///
 /// Reads and writes velocities and impulses of contacts and joints, and which lanes are settled.
 /// Serial, island by island in the order of their lowest slots.
 template <int D, int W>
 void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
-  if (context.tuning.contact_block != ContactBlockRows::kIsland) return;
   IslandSolver<D>& solver = scratch.islands_solved;
-  if (solver.groups.empty()) return;
+  if (!solver.acts) return;
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   solver.tensions.clear();
   ContactKernels<D, W>::look_for_rest(
       context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
   const Unrest all = begin_settling<D, W>(contacts);
+  bool all_rest = true;
   for (auto& island : solver.islands) {
-    if (island.groups.begin == island.groups.end) continue;
+    if (!island.taken) continue;
     island.corrects = false;
-    const Remainder left = remainder_of<D, W>(context, scratch, all, island);
-    island.stirred = left.misses;
-    if (!left.misses) {
-      ++solver.work.rests;
-      hand_over<D, W>(island, false, island.swept || left.slides, scratch);
+    island.stirred = is_restless<D, W>(context, scratch, all, island);
+    if (island.stirred) {
+      all_rest = false;
+      solve_island<D, W>(context, scratch, island);
       continue;
     }
-    if (island.products_left <= 0) {
-      hand_over<D, W>(island, true, true, scratch);
-      continue;
-    }
-    gather_island<D, W>(context, scratch, island);
-    const Solved solved =
-        solver.solve(island, scratch.masses, scratch.motions, context.tuning.push_speed_max);
-    scatter_island<D, W>(scratch, island);
-    const bool in_part = solved == Solved::kPartly;
-    hand_over<D, W>(island, in_part,
-                    in_part || island.swept || solver.leaves_for_sweeps(island, kRest.misses),
-                    scratch);
+    ++solver.work.rests;
+    hand_over<D, W>(island, false, true, scratch);
   }
+  if (!all_rest) return;
+  // Lanes of no contact do not make a block one of which only some lanes are settled.
+  for (ContactBlock<D, W>& block : contacts.blocks) block.settled = 0;
 }
 
 /// Moves out of overlap what was solved at once, and leaves its velocities alone.
@@ -318,10 +320,10 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
 /// Reads corrections; writes deltas of positions and rotations.
 template <int D>
 void correct_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
-  if (context.tuning.contact_block != ContactBlockRows::kIsland) return;
   const IslandSolver<D>& solver = scratch.islands_solved;
+  if (!solver.acts) return;
   for (const auto& island : solver.islands) {
-    for (int n = island.nodes.begin; n < island.nodes.end && island.corrects; ++n) {
+    for (int n = island.nodes.begin; n < island.nodes.end && island.taken && island.corrects; ++n) {
       const auto node = static_cast<std::size_t>(n);
       Motion<D>& motion = scratch.motions[solver.body_of[node]];
       Spin<D> turn;

@@ -45,7 +45,9 @@ void factor_trees(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D>
 void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scratch);
 template <int D, int W>
-void group_islands(StepScratch<D>& scratch);
+void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch);
+template <int D, int W>
+void group_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>
 void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>

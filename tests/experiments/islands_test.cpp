@@ -2,15 +2,13 @@
 
 #include <algorithm>
 #include <cmath>
-#include <stdexcept>
 #include <string>
 #include <vector>
 
 #include "bench/trials/judges.hpp"
-#include "bench/trials/methods.hpp"
 #include "scenes/build.hpp"
-#include "scenes/simulation.hpp"
 #include "solver/validate.hpp"
+#include "tests/experiments/begin_trial.hpp"
 
 namespace cycloid::trials {
 
@@ -20,18 +18,8 @@ static solver::Tuning islands_at_once() {
   return tuning;
 }
 
-static const scenes::Trial& trial_named(const std::string& name) {
-  for (const scenes::Trial& trial : scenes::trials())
-    if (trial.name == name) return trial;
-  throw std::logic_error("no trial " + name);
-}
-
 static scenes::Simulation begin_trial(const std::string& name) {
-  scenes::Scene scene = trial_named(name).make();
-  scene.tuning = with_method(scene.tuning, islands_at_once());
-  solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
-  EXPECT_TRUE(simulation.ok()) << simulation.error().field;
-  return std::move(simulation.value());
+  return begin_trial(name, islands_at_once());
 }
 
 /// Blows on pyramids, joints with contacts in loops, motors against limits, and four points of a

@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <random>
 #include <string>
 #include <vector>
@@ -41,21 +42,27 @@ static std::string test_name(const testing::TestParamInfo<std::string>& method) 
   return name;
 }
 
+/// A number of the environment, which `./dev rooms` sets to play longer.
+static int wanted(const char* name, int otherwise) {
+  const char* text = std::getenv(name);
+  return text == nullptr ? otherwise : std::stoi(text);
+}
+
 class PlayedRooms : public testing::TestWithParam<std::string> {};
 
 /// A trial is a scene that somebody thought of. What eight players wedge, throw and drop in a room
 /// of joints and of things that bounce, nobody does: no body may leave the bounds of the world.
 TEST_P(PlayedRooms, NoWorldFaults) {
-  constexpr unsigned kRooms = 8;
-  constexpr int kTicks = 1800;
+  const int rooms = wanted("CYCLOID_PLAYED_ROOMS", 8);
+  const int ticks = wanted("CYCLOID_PLAYED_TICKS", 1800);
   scenes::Scene scene = *scenes::find("room:bodies=64").scene;
   scene.tuning = with_method(scene.tuning, tuning_of(GetParam()));
-  for (unsigned room = 1; room <= kRooms; ++room) {
+  for (int room = 1; room <= rooms; ++room) {
     solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
     ASSERT_TRUE(simulation.ok()) << simulation.error().field;
-    std::mt19937 random(room);
+    std::mt19937 random(static_cast<unsigned>(room));
     std::vector<scenes::SeatInput> inputs(simulation.value().seats());
-    for (int tick = 1; tick <= kTicks; ++tick) {
+    for (int tick = 1; tick <= ticks; ++tick) {
       change_inputs(random, inputs);
       const solver::Error error = simulation.value().step(inputs);
       ASSERT_TRUE(error.ok()) << "room " << room << ", tick " << tick << ": " << error.field;

@@ -52,11 +52,12 @@ solver::Rotation<D> rotation_of(int value) {
 }
 
 Tuning tuning_of(std::uint32_t choice) {
-  const Tuning methods[] = {Tuning::soft_step(),     Tuning::pgs(),          Tuning::xpbd(),
-                            Tuning::split_impulse(), Tuning::pgs_ngs(),      Tuning::tgs_ngs(),
-                            Tuning::pgs_soft(),      Tuning::pgs_ngs_block()};
-  Tuning tuning = methods[choice % 8];
-  choice /= 8;
+  const Tuning methods[] = {
+      Tuning::soft_step(),     Tuning::pgs(),           Tuning::xpbd(),
+      Tuning::split_impulse(), Tuning::pgs_ngs(),       Tuning::tgs_ngs(),
+      Tuning::pgs_soft(),      Tuning::pgs_ngs_block(), Tuning::soft_loaded()};
+  Tuning tuning = methods[choice % 9];
+  choice /= 9;
   if (choice % 4 == 1) tuning.order = solver::Order::kId;
   if (choice % 4 == 2) tuning.order = solver::Order::kReverse;
   choice /= 4;

@@ -112,4 +112,38 @@ TEST(IslandSolver, PushesWhatIsWedgedNoFasterThanItsBound) {
   EXPECT_NEAR(body.solver.correction[0][0], 3.0, 1.0e-6) << "unbounded it would be 17 m/s";
 }
 
+/// Two joints that pull a body of 1 kg against each other.
+struct BodyBetweenJoints : BodyOnGround {
+  BodyBetweenJoints(float left, float right, float speed) {
+    solver.groups.clear();
+    solver.rows.clear();
+    for (const float side : {-1.0f, 1.0f}) {
+      const int first = static_cast<int>(solver.rows.size());
+      solver.groups.push_back({-1, 0, -1, first, 1, false, 0.0, {}, {}});
+      add_row(side, 0.0f);
+      solver.rows.back().impulse = side < 0.0f ? left : right;
+      solver.rows.back().missing = side * speed;
+    }
+    island.joints = island.groups;
+  }
+};
+
+// A thousand newton seconds that hold nothing; a hundredth of that, where one of them has turned a
+// little, throws the body away at 10 m/s.
+TEST(IslandSolver, TakesAStressBackThatThrowsABodyAway) {
+  BodyBetweenJoints body(1000.0f, 1010.0f, 10.0f);
+  EXPECT_EQ(body.solve(), Solved::kWhole);
+  EXPECT_NEAR(body.solver.change[0][0], -10.0, 1.0e-2) << "it is held again";
+  for (const IslandRow<2>& row : body.solver.rows) EXPECT_LT(row.impulse, 20.0);
+}
+
+// The same beside a load of 1 N s, which it happens to hold.
+TEST(IslandSolver, KeepsNoStressBeyondManyTimesItsLoad) {
+  BodyBetweenJoints body(1000.0f, 1001.0f, 0.0f);
+  EXPECT_EQ(body.solve(), Solved::kWhole);
+  EXPECT_NEAR(body.solver.change[0][0], 0.0, 1.0e-2) << "it is still held";
+  EXPECT_NEAR(body.solver.rows[1].impulse - body.solver.rows[0].impulse, 1.0, 1.0e-2);
+  for (const IslandRow<2>& row : body.solver.rows) EXPECT_LT(row.impulse, 20.0);
+}
+
 }  // namespace cycloid::solver

@@ -1,0 +1,66 @@
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// How far a soft contact may give way under its load before its island is solved at once, m. Half
+/// as much holds nothing more and solves more than twice as many islands in a room of players;
+/// half as much again lets weights rock that rest under a change of substeps.
+static constexpr float kContactYield = 2.0e-3f;
+/// The same of a soft joint, m.
+static constexpr float kJointYield = 3.0e-3f;
+
+/// Whether what a joint carries, N s in every substep, would move its spring by more than the
+/// bound. Of the first rows alone: those hold a point together, and their impulses are forces.
+template <int D>
+static bool is_loaded(const StepContext<D>& context, const JointRow<D>& row) {
+  if (!is_held(row)) return false;
+  float square = 0.0f;
+  for (int i = 0; i < D; ++i) square += row.impulse[i] * row.impulse[i];
+  const float inverse_mass = row.mass_a.inverse_mass + row.mass_b.inverse_mass;
+  return sqrt(square) * inverse_mass * yield_of(context.joint) > kJointYield;
+}
+
+/// Looks for what soft contacts and joints cannot hold up: with them overlap is load over frequency
+/// squared, whatever the number of substeps. The load is that of the last tick, which the state
+/// has.
+///
+/// Reads masses and the impulses of blocks and joint rows; writes the loaded slots, one of each
+/// such pair, and whether islands are solved at all in this tick. Serial; which slots there are
+/// does not depend on the order.
+template <int D, int W>
+void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  solver.loaded.clear();
+  solver.acts = context.tuning.contact_block == ContactBlockRows::kIsland;
+  if (solver.acts || !solves_islands(context.tuning)) return;
+  const auto add = [&](std::uint32_t a, std::uint32_t b) {
+    solver.loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
+  };
+  const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  ContactKernels<D, W>::look_for_load(
+      {yield_of(context.contact), yield_of(context.contact_static), kContactYield},
+      block_range<D, W>(scratch, {0, static_cast<int>(blocks.size())}));
+  for (const ContactBlock<D, W>& block : blocks)
+    for (int lane = 0; lane < kLaneCount<W> && block.loaded >> lane != 0; ++lane)
+      if ((block.loaded >> lane & 1) != 0) add(block.body_a[lane], block.body_b[lane]);
+  for (const JointRow<D>& row : scratch.joint_rows)
+    if (is_loaded(context, row)) add(row.body_a, row.body_b);
+  solver.acts = !solver.loaded.empty();
+}
+
+template <int D, int W>
+struct InstantiateLoaded {
+  static constexpr auto kFind = &find_loaded<D, W>;
+};
+template struct InstantiateLoaded<2, 1>;
+template struct InstantiateLoaded<2, 4>;
+template struct InstantiateLoaded<2, 8>;
+template struct InstantiateLoaded<2, 16>;
+template struct InstantiateLoaded<2, kAvx2Lanes>;
+template struct InstantiateLoaded<3, 1>;
+template struct InstantiateLoaded<3, 4>;
+template struct InstantiateLoaded<3, 8>;
+template struct InstantiateLoaded<3, 16>;
+template struct InstantiateLoaded<3, kAvx2Lanes>;
+
+}  // namespace cycloid::solver
