@@ -268,7 +268,7 @@ struct Tuning {
   std::uint32_t position_sweeps = 0;  ///< Of kNgs and kXpbd, and pseudo-velocity sweeps.
   Stabilisation stabilisation = Stabilisation::kSoft;
   Order order = Order::kColor;
-  ContactBlockRows contact_block = ContactBlockRows::kNone;
+  ContactBlockRows contact_block = ContactBlockRows::kLoadedIsland;
   JointSolver joint_solver = JointSolver::kIterated;
   float warm_starting = 1.0f;    ///< Share of the last impulses to start from: 0 to 1.
   float over_relaxation = 1.0f;  ///< Factor on each change of an impulse (SOR): above 0, below 2.
@@ -291,13 +291,13 @@ struct Tuning {
   float particle_damping = 0.0f;  ///< 1/s.
 
   /// Small steps, one soft sweep and one relax sweep each: Soft Step, TGS-Soft (Catto 2024).
-  static Tuning soft_step() { return {}; }
-  /// The same, but for thin islands whose load it could not hold.
-  static Tuning soft_loaded() {
+  static Tuning soft_step() {
     Tuning tuning;
-    tuning.contact_block = ContactBlockRows::kLoadedIsland;
+    tuning.contact_block = ContactBlockRows::kNone;
     return tuning;
   }
+  /// The default: the same, but for thin islands whose load it could not hold.
+  static Tuning soft_loaded() { return {}; }
   /// Projected Gauss-Seidel with Baumgarte's bias, as in Box2D Lite (Catto, GDC 2006).
   static Tuning pgs() { return classic(Stabilisation::kBaumgarte, 10, 0, 0); }
   /// Overlap leaves through velocities of its own, so that it adds no energy.
@@ -323,6 +323,7 @@ struct Tuning {
   static Tuning classic(Stabilisation stabilisation, std::uint32_t sweeps, std::uint32_t relax,
                         std::uint32_t position) {
     Tuning tuning;
+    tuning.contact_block = ContactBlockRows::kNone;
     tuning.substeps = 1;
     tuning.sweeps = sweeps;
     tuning.relax_sweeps = relax;

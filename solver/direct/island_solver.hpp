@@ -102,7 +102,9 @@ class IslandSolver {
     int pairs;                   ///< Contacts and joints.
     float mass;                  ///< Of the heaviest body, kg.
     float inertia;               ///< The greatest, kg m^2.
+    bool jointed;                ///< Some of those are joints.
     bool taken;                  ///< Solved at once in this tick; else the sweeps have it.
+    bool weighed;                ///< They have it, but a guess that has gone wrong is weakened.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
     bool stirred;   ///< The substep before had to solve it.
     bool corrects;  ///< `correction` of its nodes is not 0.
@@ -117,7 +119,8 @@ class IslandSolver {
 
   /// How an island is solved; as long as the pairs of nodes stay as they are.
   struct Plan {
-    bool taken;  ///< False: it would cost too much, and is left to the sweeps.
+    bool taken;    ///< False: it would cost too much, and is left to the sweeps.
+    bool weighed;  ///< It is, and has joints, whose impulses may be of a tick that solved it.
     Range steps;
     int products;
   };
@@ -151,12 +154,16 @@ class IslandSolver {
   /// `correction`, with which nothing moves faster than `push_speed_max`, m/s.
   Solved solve(Island& island, std::span<const BodyMass<D>> masses,
                std::span<const Motion<D>> motions, float push_speed_max);
+  /// The first thing that `solve` does, by itself: takes back what is not worth having of the
+  /// impulses that the substep begins with. Writes impulses and `change`.
+  void weaken_guess(const Island& island, std::span<const BodyMass<D>> masses);
   /// Whether a contact of a solved island still approaches, pulls or slides by more than this, m/s.
   bool leaves_for_sweeps(const Island& island, Wide tolerance) const;
 
  private:
+  void add_up_impulses(const Island& island);
   Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);
-  void weaken_guess(const Island& island, Wide share);
+  void keep_of_guess(const Island& island, Wide share);
   void choose(const Island& island);
   bool let_go(const Island& island);
   void assemble(const Island& island, std::span<const BodyMass<D>> masses,
@@ -169,6 +176,7 @@ class IslandSolver {
   Wide share_of_correction(const Island& island, Wide speed) const;
   void correct_positions(Island& island, Wide push_speed_max);
   Wide most_missing(const Island& island) const;
+  void relieve_stress(const Island& island);
   void forget_conflict(const Island& island);
 
   std::vector<Vector> solution_;  ///< By node.

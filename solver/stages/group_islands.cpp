@@ -88,7 +88,9 @@ static void count_pairs(IslandSolver<D>& solver) {
   for (const HeldPair& pair : solver.held) {
     if (!pair.a_moves && !pair.b_moves) continue;
     const std::uint32_t slot = pair.a_moves ? pair.a : pair.b;
-    ++solver.islands[static_cast<std::size_t>(solver.island_of[slot])].pairs;
+    auto& island = solver.islands[static_cast<std::size_t>(solver.island_of[slot])];
+    ++island.pairs;
+    island.jointed = island.jointed || pair.lane < 0;
   }
 }
 
@@ -136,7 +138,9 @@ static bool is_thin(const typename IslandSolver<D>::Island& island) {
   return island.pairs <= static_cast<int>(kThinPairsPerBody * bodies) + kThinPairsMore;
 }
 
-/// Joins the nodes and plans each island; lets go of those that would cost too much.
+/// Joins the nodes and plans each island; lets go of those that would cost too much, but for the
+/// guess of what is jointed: a chain that touches itself in one tick more than in the last, when it
+/// was solved at once and took a blow, would begin the sweeps with impulses that throw it away.
 template <int D>
 static void plan_islands(IslandSolver<D>& solver) {
   solver.matrix.begin(static_cast<int>(solver.body_of.size()));
@@ -147,9 +151,10 @@ static void plan_islands(IslandSolver<D>& solver) {
   for (const auto& island : solver.islands) {
     auto& plan = solver.plans.emplace_back();
     const std::uint64_t before = solver.matrix.products();
-    plan = {false, {0, 0}, 0};
-    if (solver.only_thin && !is_thin<D>(island)) continue;
-    plan.taken = solver.matrix.analyse(island.nodes, kProductsPerPair * island.pairs, plan.steps);
+    plan = {false, false, {0, 0}, 0};
+    if (!solver.only_thin || is_thin<D>(island))
+      plan.taken = solver.matrix.analyse(island.nodes, kProductsPerPair * island.pairs, plan.steps);
+    plan.weighed = !plan.taken && island.jointed;
     plan.products = static_cast<int>(solver.matrix.products() - before);
   }
 }
@@ -160,7 +165,8 @@ static void follow_plans(IslandSolver<D>& solver) {
     auto& island = solver.islands[i];
     island.steps = solver.plans[i].steps;
     island.products = solver.plans[i].products;
-    for (int n = island.nodes.begin; n < island.nodes.end && !solver.plans[i].taken; ++n)
+    const bool has_groups = solver.plans[i].taken || solver.plans[i].weighed;
+    for (int n = island.nodes.begin; n < island.nodes.end && !has_groups; ++n)
       solver.island_of[solver.body_of[static_cast<std::size_t>(n)]] = -1;
   }
 }
@@ -223,13 +229,23 @@ static void list_groups(IslandSolver<D>& solver) {
   solver.tensions.reserve(2 * solver.groups.size());
 }
 
+/// Whether an island is solved at once in this tick, or its guess weighed, if it is `wanted`.
+template <int D>
+static void begin_island(const IslandSolver<D>& solver, bool wanted, std::size_t at,
+                         typename IslandSolver<D>::Island& island) {
+  const bool any = wanted && island.groups.begin < island.groups.end;
+  island.taken = any && solver.plans[at].taken;
+  island.weighed = any && solver.plans[at].weighed;
+}
+
 /// What is each island's own in this tick: its greatest mass and inertia, and how much it may cost.
 template <int D>
 static void begin_islands(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  for (auto& island : solver.islands) {
+  for (std::size_t at = 0; at < solver.islands.size(); ++at) {
+    auto& island = solver.islands[at];
     island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
-    island.taken = !solver.only_thin && island.groups.begin < island.groups.end;
+    begin_island(solver, !solver.only_thin, at, island);
     island.swept = island.stirred = island.corrects = false;
     island.mass = island.inertia = 0.0f;
     for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
@@ -248,7 +264,9 @@ static bool any_wanted(const IslandSolver<D>& solver) {
   if (!solver.only_thin) return true;
   return std::any_of(solver.loaded.begin(), solver.loaded.end(), [&](std::uint32_t slot) {
     const int at = solver.island_of[slot];
-    return at >= 0 && is_thin<D>(solver.islands[static_cast<std::size_t>(at)]);
+    if (at < 0) return false;
+    const auto& island = solver.islands[static_cast<std::size_t>(at)];
+    return island.jointed || is_thin<D>(island);
   });
 }
 
@@ -257,8 +275,8 @@ template <int D>
 static void take_loaded(IslandSolver<D>& solver) {
   for (const std::uint32_t slot : solver.loaded) {
     if (solver.island_of[slot] < 0) continue;
-    auto& island = solver.islands[static_cast<std::size_t>(solver.island_of[slot])];
-    island.taken = island.groups.begin < island.groups.end;
+    const auto at = static_cast<std::size_t>(solver.island_of[slot]);
+    begin_island(solver, true, at, solver.islands[at]);
   }
 }
 

@@ -59,6 +59,15 @@ static void take_contact(float touch, int lane, ContactBlock<D, W>& block) {
   block.impulse_scale.raw[lane] = 0.0f;
 }
 
+/// Gives the groups of a contact their friction.
+template <int D>
+static void give_friction(Wide friction, std::span<IslandRows<D>> groups) {
+  for (IslandRows<D>& group : groups) {
+    group.friction = friction;
+    group.count = friction > 0.0 ? 1 + Dim<D>::kTangents : 1;
+  }
+}
+
 /// Takes what islands hold from the soft sweeps, and gives the groups of contacts their friction.
 template <int D, int W>
 static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
@@ -67,22 +76,21 @@ static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
   const float touch = kTouch * context.tuning.slop;
   for (std::size_t i = 0; i < solver.held.size(); ++i) {
     const int at = solver.held_in[i];
-    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken) continue;
+    if (at < 0) continue;
+    const bool taken = solver.islands[static_cast<std::size_t>(at)].taken;
     const HeldPair& pair = solver.held[i];
     const auto place = static_cast<std::size_t>(pair.place);
     if (pair.lane < 0) {
+      if (!taken) continue;
       scratch.joint_rows[place].in_island = true;
       scratch.joint_rows[place].solved_directly = true;
       continue;
     }
     ContactBlock<D, W>& block = blocks[place];
-    take_contact(touch, pair.lane, block);
-    const auto friction = static_cast<Wide>(block.friction.raw[pair.lane]);
-    for (int point = 0; point < pair.points; ++point) {
-      auto& group = solver.groups[static_cast<std::size_t>(solver.group_of[i] + point)];
-      group.friction = friction;
-      group.count = friction > 0.0 ? 1 + Dim<D>::kTangents : 1;
-    }
+    if (taken) take_contact(touch, pair.lane, block);
+    give_friction<D>(static_cast<Wide>(block.friction.raw[pair.lane]),
+                     {&solver.groups[static_cast<std::size_t>(solver.group_of[i])],
+                      static_cast<std::size_t>(pair.points)});
   }
 }
 

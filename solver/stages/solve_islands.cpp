@@ -1,201 +1,16 @@
 #include "solver/constraints/contact_lanes.hpp"
+#include "solver/stages/island_rows.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
 
-/// Stiffness of a row over the greatest mass of its island: what a load leaves of its impulse to
-/// the next substep is a thousandth.
-static constexpr float kStiffness = 1.0e3f;
 /// What an island may miss before it is solved. The impulses of a solve have stopped what moved;
 /// as the next warm start they would set it going the other way, so what was just solved is held to
 /// fifty times less. Overlap may be left half a millimetre beyond the slop.
 static constexpr RestBounds kRest{1.0e-3f, 2.0e-5f, 1.0e-2f};
-/// Tension over inertia, in one substep, that the explicit step is left: so what spins slower than
-/// a third of a radian per substep keeps its angular momentum.
-static constexpr float kExplicit = 0.1f;
-
-template <int D>
-static Wide speed_of(const Wide (&row)[Dim<D>::kFreedoms], const Motion<D>& motion) {
-  Wide speed = 0.0;
-  for (int i = 0; i < D; ++i) speed += row[i] * static_cast<Wide>(motion.velocity[i]);
-  for (int i = 0; i < Dim<D>::kSpin; ++i) speed += row[D + i] * static_cast<Wide>(motion.spin[i]);
-  return speed;
-}
-
-template <int N, class L>
-static Vec<N> lane_of(const Vec<N, L>& lanes, int lane) {
-  Vec<N> one;
-  for (int i = 0; i < N; ++i) one[i] = lanes[i].raw[lane];
-  return one;
-}
-
-/// The rows of a contact point, of which the first `count` are wanted: its normal, its tangents.
-/// @pre the block's arms are of the present poses.
-template <int D, int W>
-static void gather_point(const StepContext<D>& context, const StepScratch<D>& scratch,
-                         const ContactBlock<D, W>& block,
-                         const typename IslandSolver<D>::Source& source, Wide stiffness,
-                         IslandRows<D>& group, IslandRow<D>* row) {
-  const auto& point = block.points[source.point];
-  const int lane = source.lane;
-  const Motion<D>& motion_a = scratch.motions[block.body_a[lane]];
-  const Motion<D>& motion_b = scratch.motions[block.body_b[lane]];
-  const bool a_turns = can_turn<D>(scratch.masses[block.body_a[lane]]);
-  const bool b_turns = can_turn<D>(scratch.masses[block.body_b[lane]]);
-  const Vec<D> r_a = lane_of(point.arms.r_a, lane);
-  const Vec<D> r_b = lane_of(point.arms.r_b, lane);
-  for (int i = 0; i < D; ++i) {
-    group.arm_a[i] = static_cast<Wide>(a_turns ? r_a[i] : 0.0f);
-    group.arm_b[i] = static_cast<Wide>(b_turns ? r_b[i] : 0.0f);
-  }
-  for (int r = 0; r < group.count; ++r) {
-    const Vec<D> direction = lane_of(r == 0 ? block.normal : block.tangent[r - 1], lane);
-    const Spin<D> turn_a = moment(r_a, direction);
-    const Spin<D> turn_b = moment(r_b, direction);
-    for (int i = 0; i < D; ++i) {
-      row[r].b[i] = static_cast<Wide>(direction[i]);
-      row[r].a[i] = -row[r].b[i];
-    }
-    for (int i = 0; i < Dim<D>::kSpin; ++i) {
-      row[r].a[D + i] = static_cast<Wide>(a_turns ? -turn_a[i] : 0.0f);
-      row[r].b[D + i] = static_cast<Wide>(b_turns ? turn_b[i] : 0.0f);
-    }
-    row[r].missing = speed_of<D>(row[r].a, motion_a) + speed_of<D>(row[r].b, motion_b);
-    row[r].overlap = 0.0;
-    row[r].stiffness = stiffness;
-    row[r].impulse = static_cast<Wide>(r == 0 ? point.normal_impulse.raw[lane]
-                                              : point.tangent_impulse[r - 1].raw[lane]);
-    row[r].mass = static_cast<Wide>(r == 0 ? point.normal_mass.raw[lane]
-                                           : point.tangent_mass[r - 1].raw[lane]);
-  }
-  const float gap = point.gap.raw[lane];
-  if (gap > 0.0f) {
-    row[0].missing += static_cast<Wide>(gap * context.inverse_h);
-    return;
-  }
-  const bool both = (block.moves_a >> lane & 1) != 0 && (block.moves_b >> lane & 1) != 0;
-  const float rate = both ? context.contact.bias_rate : context.contact_static.bias_rate;
-  row[0].overlap = static_cast<Wide>(
-      max(rate * min(gap + context.tuning.slop, 0.0f), -context.tuning.push_speed_max));
-}
-
-template <int D>
-static void gather_joint(const StepContext<D>& context, const StepScratch<D>& scratch,
-                         const JointRow<D>& joint, const typename IslandSolver<D>::Island& island,
-                         IslandRow<D>* row) {
-  for (int r = 0; r < joint.rows.count; ++r) {
-    const Row<D>& from = joint.rows.rows[static_cast<std::size_t>(r)];
-    bool moves = false;
-    for (int i = 0; i < D; ++i) {
-      row[r].a[i] = static_cast<Wide>(from.linear_a[i]);
-      row[r].b[i] = static_cast<Wide>(from.linear_b[i]);
-      moves = moves || from.linear_a[i] != 0.0f || from.linear_b[i] != 0.0f;
-    }
-    const bool a_turns = can_turn<D>(scratch.masses[joint.body_a]);
-    const bool b_turns = can_turn<D>(scratch.masses[joint.body_b]);
-    for (int i = 0; i < Dim<D>::kSpin; ++i) {
-      row[r].a[D + i] = static_cast<Wide>(a_turns ? from.angular_a[i] : 0.0f);
-      row[r].b[D + i] = static_cast<Wide>(b_turns ? from.angular_b[i] : 0.0f);
-    }
-    row[r].missing = static_cast<Wide>(
-        row_speed(from, scratch.motions[joint.body_a], scratch.motions[joint.body_b]) +
-        context.joint.bias_rate * from.error);
-    row[r].overlap = 0.0;
-    row[r].impulse = static_cast<Wide>(joint.impulse[r]);
-    row[r].mass = 1.0;
-    row[r].stiffness = static_cast<Wide>(kStiffness * (moves ? island.mass : island.inertia));
-  }
-}
-
-/// r x (u x ...): a vector along which the moment of another is known.
-static Vec<2> cross_moment(const Vec<2>& u, const Vec<1>& m) {
-  return {{u[1] * m[0], -u[0] * m[0]}};
-}
-static Vec<3> cross_moment(const Vec<3>& u, const Vec<3>& m) {
-  return cross(u, m);
-}
-
-/// What the force of a joint's point rows on one body does when that body turns: at an arm r it
-/// pulls back with the impulse h r . impulse per rad/s. Taken implicitly it is stable at any load.
-template <int D>
-static void add_tension(const StepContext<D>& context, const JointRow<D>& joint, bool of_b,
-                        int node, const BodyMass<D>& mass,
-                        std::vector<IslandTension<D>>& tensions) {
-  if (node < 0 || !can_turn<D>(mass) || joint.rows.split < D) return;
-  Vec<D> arm = Vec<D>::zero();
-  Vec<D> force = Vec<D>::zero();
-  for (int r = 0; r < D; ++r) {
-    const Row<D>& row = joint.rows.rows[static_cast<std::size_t>(r)];
-    const Vec<D>& u = of_b ? row.linear_b : row.linear_a;
-    if (dot(u, u) == 0.0f) return;
-    arm += 1.0f / static_cast<float>(D - 1) * cross_moment(u, of_b ? row.angular_b : row.angular_a);
-    force += joint.impulse[r] * u;
-  }
-  const Vec<D> along = normalized_or(arm, Vec<D>::zero());
-  const float* inverse = mass.inverse_inertia.m;
-  float across = inverse[0];
-  if constexpr (Dim<D>::kSpin == 3)
-    across =
-        0.5f * (inverse[0] + inverse[4] + inverse[8] - dot(along, mass.inverse_inertia * along));
-  const float stiffness = context.h * dot(arm, force) - kExplicit / max(across, 1.0e-30f);
-  if (stiffness > 0.0f) tensions.push_back({node, stiffness, along});
-}
-
-template <int D, int W>
-static void gather_island(const StepContext<D>& context, StepScratch<D>& scratch,
-                          typename IslandSolver<D>::Island& island) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const auto stiffness = static_cast<Wide>(kStiffness * island.mass);
-  island.tensions = {static_cast<int>(solver.tensions.size()),
-                     static_cast<int>(solver.tensions.size())};
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    IslandRows<D>& group = solver.groups[static_cast<std::size_t>(g)];
-    const auto& source = solver.sources[static_cast<std::size_t>(g)];
-    IslandRow<D>* row = &solver.rows[static_cast<std::size_t>(group.first)];
-    const auto place = static_cast<std::size_t>(source.place);
-    if (group.is_contact) {
-      gather_point<D, W>(context, scratch, blocks[place], source, stiffness, group, row);
-      continue;
-    }
-    const JointRow<D>& joint = scratch.joint_rows[place];
-    group.count = joint.rows.count;
-    gather_joint(context, scratch, joint, island, row);
-    add_tension(context, joint, false, group.node_a, scratch.masses[joint.body_a], solver.tensions);
-    add_tension(context, joint, true, group.node_b, scratch.masses[joint.body_b], solver.tensions);
-  }
-  island.tensions.end = static_cast<int>(solver.tensions.size());
-}
-
-template <int D, int W>
-static void scatter_island(StepScratch<D>& scratch,
-                           const typename IslandSolver<D>::Island& island) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
-    const auto node = static_cast<std::size_t>(n);
-    Motion<D>& motion = scratch.motions[solver.body_of[node]];
-    const bool turns = can_turn<D>(scratch.masses[solver.body_of[node]]);
-    for (int i = 0; i < D; ++i) motion.velocity[i] += static_cast<float>(solver.change[node][i]);
-    for (int i = 0; i < Dim<D>::kSpin && turns; ++i)
-      motion.spin[i] += static_cast<float>(solver.change[node][D + i]);
-  }
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = solver.groups[static_cast<std::size_t>(g)];
-    const auto& source = solver.sources[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &solver.rows[static_cast<std::size_t>(group.first)];
-    const auto place = static_cast<std::size_t>(source.place);
-    for (int r = 0; r < group.count; ++r) {
-      const auto impulse = static_cast<float>(row[r].impulse);
-      if (!group.is_contact) {
-        scratch.joint_rows[place].impulse[r] = impulse;
-        continue;
-      }
-      auto& point = blocks[place].points[source.point];
-      (r == 0 ? point.normal_impulse : point.tangent_impulse[r - 1]).raw[source.lane] = impulse;
-    }
-  }
-}
+/// What a joint may miss, m/s or rad/s, before its island's guess is looked at for its worth where
+/// it is left to the sweeps. Swings of what is solved well miss as much.
+static constexpr float kWild = 1.0f;
 
 /// Whether a rigid row of a joint misses more than the bound, m/s or rad/s.
 template <int D>
@@ -264,13 +79,33 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
   }
 }
 
+/// Takes back what is not worth having of the guess of an island that the sweeps have, where that
+/// sets its joints going: it may be of a substep that solved the island at once.
+template <int D, int W>
+static void weigh_island(const StepContext<D>& context, StepScratch<D>& scratch,
+                         typename IslandSolver<D>::Island& island) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  bool wild = false;
+  for (int g = island.joints.begin; g < island.joints.end && !wild; ++g) {
+    const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
+    wild = misses(context, scratch, scratch.joint_rows[place], kWild);
+  }
+  if (!wild) return;
+  gather_island<D, W>(context, scratch, island);
+  solver.weaken_guess(island, scratch.masses);
+  scatter_island<D, W>(scratch, island);
+}
+
 /// Solves one island from where the warm start has led, or leaves it to the sweeps for what is left
 /// of this tick where it has cost too much.
 template <int D, int W>
 static void solve_island(const StepContext<D>& context, StepScratch<D>& scratch,
                          typename IslandSolver<D>::Island& island) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  if (island.products_left <= 0) return hand_over<D, W>(island, true, true, scratch);
+  if (island.products_left <= 0) {
+    weigh_island<D, W>(context, scratch, island);
+    return hand_over<D, W>(island, true, true, scratch);
+  }
   gather_island<D, W>(context, scratch, island);
   const Solved solved =
       solver.solve(island, scratch.masses, scratch.motions, context.tuning.push_speed_max);
@@ -299,6 +134,7 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   const Unrest all = begin_settling<D, W>(contacts);
   bool all_rest = true;
   for (auto& island : solver.islands) {
+    if (island.weighed) weigh_island<D, W>(context, scratch, island);
     if (!island.taken) continue;
     island.corrects = false;
     island.stirred = is_restless<D, W>(context, scratch, all, island);

@@ -24,6 +24,20 @@ static void change_inputs(std::mt19937& random, std::vector<scenes::SeatInput>& 
   }
 }
 
+/// The same of any scene: every axis is pushed about every 40 ticks, some of three buttons are
+/// held about every 30 and let go soon after.
+static void push_all(std::mt19937& random, std::vector<scenes::SeatInput>& inputs) {
+  for (scenes::SeatInput& input : inputs) {
+    for (std::int16_t& axis : input.axes)
+      if (random() % 40 == 0)
+        axis = static_cast<std::int16_t>(static_cast<int>(random() % 65535) - 32767);
+    if (random() % 30 == 0)
+      input.buttons = random() % 8;
+    else if (random() % 6 == 0)
+      input.buttons = 0;
+  }
+}
+
 static std::vector<std::string> names() {
   std::vector<std::string> names;
   for (const Method& method : methods()) names.emplace_back(method.name);
@@ -48,6 +62,21 @@ static int wanted(const char* name, int otherwise) {
   return text == nullptr ? otherwise : std::stoi(text);
 }
 
+using ChangeInputs = void (*)(std::mt19937&, std::vector<scenes::SeatInput>&);
+
+/// Steps a scene under random inputs and fails where its world faults.
+static void play(const scenes::Scene& scene, ChangeInputs change, int seed, int ticks) {
+  solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
+  ASSERT_TRUE(simulation.ok()) << simulation.error().field;
+  std::mt19937 random(static_cast<unsigned>(seed));
+  std::vector<scenes::SeatInput> inputs(simulation.value().seats());
+  for (int tick = 1; tick <= ticks; ++tick) {
+    change(random, inputs);
+    const solver::Error error = simulation.value().step(inputs);
+    ASSERT_TRUE(error.ok()) << "seed " << seed << ", tick " << tick << ": " << error.field;
+  }
+}
+
 class PlayedRooms : public testing::TestWithParam<std::string> {};
 
 /// A trial is a scene that somebody thought of. What eight players wedge, throw and drop in a room
@@ -57,19 +86,38 @@ TEST_P(PlayedRooms, NoWorldFaults) {
   const int ticks = wanted("CYCLOID_PLAYED_TICKS", 1800);
   scenes::Scene scene = *scenes::find("room:bodies=64").scene;
   scene.tuning = with_method(scene.tuning, tuning_of(GetParam()));
-  for (int room = 1; room <= rooms; ++room) {
-    solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
-    ASSERT_TRUE(simulation.ok()) << simulation.error().field;
-    std::mt19937 random(static_cast<unsigned>(room));
-    std::vector<scenes::SeatInput> inputs(simulation.value().seats());
-    for (int tick = 1; tick <= ticks; ++tick) {
-      change_inputs(random, inputs);
-      const solver::Error error = simulation.value().step(inputs);
-      ASSERT_TRUE(error.ok()) << "room " << room << ", tick " << tick << ": " << error.field;
-    }
-  }
+  for (int room = 1; room <= rooms; ++room) play(scene, change_inputs, room, ticks);
 }
 
 INSTANTIATE_TEST_SUITE_P(Methods, PlayedRooms, testing::ValuesIn(names()), test_name);
+
+class PlayedChain : public testing::TestWithParam<std::string> {};
+
+/// A seat that swings four tonnes up until the chain of light links hangs slack, whips and lies
+/// jammed on itself, and lets them fall into it.
+TEST_P(PlayedChain, NoWorldFaults) {
+  scenes::Scene scene = *scenes::find("chain-and-ball").scene;
+  scene.tuning = with_method(scene.tuning, tuning_of(GetParam()));
+  for (int seed = 1; seed <= 6; ++seed) play(scene, push_all, seed, 12000);
+}
+
+INSTANTIATE_TEST_SUITE_P(Methods, PlayedChain,
+                         testing::Values("soft-step", "soft-loaded", "soft-direct", "soft-islands"),
+                         test_name);
+
+class PlayedScene : public testing::TestWithParam<std::string> {};
+
+TEST_P(PlayedScene, DoesNotFault) {
+  play(*scenes::find(GetParam()).scene, push_all, 1, 1200);
+}
+
+static std::vector<std::string> scenes_with_seats() {
+  std::vector<std::string> names;
+  for (const auto& entry : scenes::catalogue())
+    if (!scenes::find(entry.name).scene->seats.empty()) names.emplace_back(entry.name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Catalogue, PlayedScene, testing::ValuesIn(scenes_with_seats()), test_name);
 
 }  // namespace cycloid::trials
