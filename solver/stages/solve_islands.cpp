@@ -25,6 +25,18 @@ static bool misses(const StepContext<D>& context, const StepScratch<D>& scratch,
   return false;
 }
 
+/// Whether a joint of an island does.
+template <int D>
+static bool any_joint_misses(const StepContext<D>& context, const StepScratch<D>& scratch,
+                             const typename IslandSolver<D>::Island& island, float bound) {
+  const auto& sources = scratch.islands_solved.sources;
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const auto place = static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place);
+    if (misses(context, scratch, scratch.joint_rows[place], bound)) return true;
+  }
+  return false;
+}
+
 /// In which blocks' lanes the warm start has left something, over all blocks.
 struct Unrest {
   LaneBits misses = 0;
@@ -55,12 +67,7 @@ static bool is_restless(const StepContext<D>& context, const StepScratch<D>& scr
     const auto& block = blocks[static_cast<std::size_t>(source.place)];
     if (((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0) return true;
   }
-  const float bound = island.stirred ? kRest.stirs : kRest.misses;
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
-    if (misses(context, scratch, scratch.joint_rows[place], bound)) return true;
-  }
-  return false;
+  return any_joint_misses(context, scratch, island, island.stirred ? kRest.stirs : kRest.misses);
 }
 
 /// Tells the sweeps what is left to them of an island.
@@ -84,15 +91,9 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
 template <int D, int W>
 static void weigh_island(const StepContext<D>& context, StepScratch<D>& scratch,
                          typename IslandSolver<D>::Island& island) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  bool wild = false;
-  for (int g = island.joints.begin; g < island.joints.end && !wild; ++g) {
-    const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
-    wild = misses(context, scratch, scratch.joint_rows[place], kWild);
-  }
-  if (!wild) return;
+  if (!any_joint_misses(context, scratch, island, kWild)) return;
   gather_island<D, W>(context, scratch, island);
-  solver.weaken_guess(island, scratch.masses);
+  scratch.islands_solved.weaken_guess(island, scratch.masses);
   scatter_island<D, W>(scratch, island);
 }
 

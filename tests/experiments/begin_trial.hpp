@@ -28,4 +28,26 @@ inline scenes::Simulation begin_trial(const std::string& name, const solver::Tun
   return std::move(simulation.value());
 }
 
+/// Steps a trial with other workers and lanes beside one, and compares each digest.
+inline void expect_workers_and_lanes_invisible(const std::string& name,
+                                               const solver::Tuning& method) {
+  struct Setting {
+    int workers;
+    int lanes;
+  };
+  for (const Setting setting : {Setting{2, 4}, Setting{3, 1}, Setting{1, 8}, Setting{8, 16}}) {
+    scenes::Simulation one = begin_trial(name, method);
+    scenes::Simulation other = begin_trial(name, method);
+    ASSERT_TRUE(one.set_lanes(4).ok());
+    ASSERT_TRUE(other.set_lanes(setting.lanes).ok());
+    ASSERT_TRUE(other.set_workers(setting.workers).ok());
+    for (int tick = 1; tick <= 90; ++tick) {
+      ASSERT_TRUE(one.step({}).ok());
+      ASSERT_TRUE(other.step({}).ok());
+      ASSERT_EQ(one.digest(), other.digest()) << name << ", tick " << tick << ", workers "
+                                              << setting.workers << ", lanes " << setting.lanes;
+    }
+  }
+}
+
 }  // namespace cycloid::trials

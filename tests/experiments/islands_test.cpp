@@ -29,24 +29,7 @@ static constexpr const char* kMixed[] = {"trial-heavy-apexes", "trial-bridge",
                                          "trial-duplicate-points"};
 
 TEST(IslandsAtOnce, WorkersAndLanesAreInvisible) {
-  struct Setting {
-    int workers;
-    int lanes;
-  };
-  for (const char* name : kMixed)
-    for (const Setting setting : {Setting{2, 4}, Setting{3, 1}, Setting{1, 8}, Setting{8, 16}}) {
-      scenes::Simulation one = begin_trial(name);
-      scenes::Simulation other = begin_trial(name);
-      ASSERT_TRUE(one.set_lanes(4).ok());
-      ASSERT_TRUE(other.set_lanes(setting.lanes).ok());
-      ASSERT_TRUE(other.set_workers(setting.workers).ok());
-      for (int tick = 1; tick <= 90; ++tick) {
-        ASSERT_TRUE(one.step({}).ok());
-        ASSERT_TRUE(other.step({}).ok());
-        ASSERT_EQ(one.digest(), other.digest()) << name << ", tick " << tick << ", workers "
-                                                << setting.workers << ", lanes " << setting.lanes;
-      }
-    }
+  for (const char* name : kMixed) expect_workers_and_lanes_invisible(name, islands_at_once());
 }
 
 TEST(IslandsAtOnce, RestoredFromMemoryAndFromBytesTheyGoOnAsTheyWere) {

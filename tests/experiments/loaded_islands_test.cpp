@@ -19,29 +19,12 @@ static Tuning with_rows(Tuning tuning, ContactBlockRows rows) {
 
 /// A load on two boxes, a stack, blows on pyramids, joints with contacts in loops, motors that jam,
 /// and a box in space.
-static constexpr const char* kMixed[] = {"trial-heavy-on-light-1000", "trial-stack-30",
-                                         "trial-heavy-apexes",        "trial-bridge",
-                                         "trial-ragdoll-stress",      "trial-duplicate-points"};
+static constexpr const char* kMixed[] = {
+    "trial-heavy-on-light-1000", "trial-stack-30",         "trial-heavy-apexes", "trial-bridge",
+    "trial-ragdoll-stress",      "trial-duplicate-points", "trial-joint-grid-30"};
 
 TEST(LoadedIslands, WorkersAndLanesAreInvisible) {
-  struct Setting {
-    int workers;
-    int lanes;
-  };
-  for (const char* name : kMixed)
-    for (const Setting setting : {Setting{2, 4}, Setting{3, 1}, Setting{1, 8}, Setting{8, 16}}) {
-      scenes::Simulation one = begin_trial(name, Tuning::soft_loaded());
-      scenes::Simulation other = begin_trial(name, Tuning::soft_loaded());
-      ASSERT_TRUE(one.set_lanes(4).ok());
-      ASSERT_TRUE(other.set_lanes(setting.lanes).ok());
-      ASSERT_TRUE(other.set_workers(setting.workers).ok());
-      for (int tick = 1; tick <= 90; ++tick) {
-        ASSERT_TRUE(one.step({}).ok());
-        ASSERT_TRUE(other.step({}).ok());
-        ASSERT_EQ(one.digest(), other.digest()) << name << ", tick " << tick << ", workers "
-                                                << setting.workers << ", lanes " << setting.lanes;
-      }
-    }
+  for (const char* name : kMixed) expect_workers_and_lanes_invisible(name, Tuning::soft_loaded());
 }
 
 // What is loaded is read from the state alone: a world that has just been restored, or made of

@@ -4,6 +4,7 @@
 #include <cstdlib>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "bench/trials/methods.hpp"
@@ -104,6 +105,29 @@ TEST_P(PlayedChain, NoWorldFaults) {
 INSTANTIATE_TEST_SUITE_P(Methods, PlayedChain,
                          testing::Values("soft-step", "soft-loaded", "soft-direct", "soft-islands"),
                          test_name);
+
+// A chain that whips is solved at once in one tick and swept, with its guess weighed, in the next.
+TEST(PlayedChainDigests, HaveNoTraceOfLanesAndRestoring) {
+  scenes::Scene scene = *scenes::find("chain-and-ball").scene;
+  scene.tuning = with_method(scene.tuning, solver::Tuning::soft_loaded());
+  scenes::Simulation one = std::move(scenes::Simulation::create(scene).value());
+  scenes::Simulation other = std::move(scenes::Simulation::create(scene).value());
+  ASSERT_TRUE(one.set_lanes(4).ok());
+  ASSERT_TRUE(other.set_lanes(8).ok());
+  std::mt19937 random(3);
+  std::vector<scenes::SeatInput> inputs(one.seats());
+  scenes::Simulation::Saved saved;
+  for (int tick = 1; tick <= 4000; ++tick) {
+    push_all(random, inputs);
+    if (tick % 7 == 0) {
+      one.save(saved);
+      other.restore(saved);
+    }
+    ASSERT_TRUE(one.step(inputs).ok());
+    ASSERT_TRUE(other.step(inputs).ok());
+    ASSERT_EQ(one.digest(), other.digest()) << "tick " << tick;
+  }
+}
 
 class PlayedScene : public testing::TestWithParam<std::string> {};
 
