@@ -47,7 +47,8 @@ struct ContactBlock {
   LaneBits loaded;   ///< Of islands: lanes whose load a soft contact would give way to (find_load).
   LaneBits misses;   ///< Of islands (contact_rest.hpp): lanes that the warm start left in motion,
   LaneBits stirs;    ///< or not quite at rest.
-  LaneBits left;     ///< Of islands: lanes that are in none that is solved, for the whole tick.
+  LaneBits taken;    ///< Of islands: lanes in one that is solved, for the whole tick,
+  LaneBits left;     ///< and lanes in none.
   LaneBits settled;  ///< Of islands: lanes that biased sweeps pass by.
   std::uint32_t placed;       ///< Which poses the arms are of (StepScratch::poses); 0: of none.
   std::uint32_t point_count;  ///< The most points of any lane.

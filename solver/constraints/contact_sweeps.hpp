@@ -158,6 +158,7 @@ template <int D, int W>
 void ContactKernels<D, W>::look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
                                          const BlockRange<D, W>& range) {
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    if (block->taken == 0) continue;
     MotionLanes<D, W> a;
     MotionLanes<D, W> b;
     gather_pair(range, *block, a, b);

@@ -178,6 +178,7 @@ void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
     correction[static_cast<std::size_t>(n)] = Vector::zero();
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    if (!group.is_contact) continue;  // A joint has no overlap, and may have no row.
     const IslandRow<D>& row = rows[static_cast<std::size_t>(group.first)];
     if (!row.holds || row.overlap == 0.0) continue;
     island.corrects = true;

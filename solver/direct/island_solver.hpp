@@ -99,10 +99,16 @@ class IslandSolver {
     Range tensions;
     int products;                ///< Of blocks, that factoring takes.
     std::int64_t products_left;  ///< In this tick, before it is left to the sweeps.
+    int bodies;                  ///< That move.
     int pairs;                   ///< Contacts and joints.
     float mass;                  ///< Of the heaviest body, kg.
     float inertia;               ///< The greatest, kg m^2.
     bool jointed;                ///< Some of those are joints.
+    bool wanted;                 ///< In this tick it is to be solved, or weighed.
+    bool planned;                ///< It is known whether and how to, as long as the same holds.
+    bool numbered;               ///< It was looked at closely: it has nodes from the start.
+    bool solvable;               ///< It costs little enough.
+    bool grouped;                ///< All that it holds has groups; else only joints have.
     bool taken;                  ///< Solved at once in this tick; else the sweeps have it.
     bool weighed;                ///< They have it, but a guess that has gone wrong is weakened.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
@@ -117,22 +123,20 @@ class IslandSolver {
     int point;
   };
 
-  /// How an island is solved; as long as the pairs of nodes stay as they are.
+  /// How a numbered island is solved; as long as the pairs of nodes stay as they are.
   struct Plan {
-    bool taken;    ///< False: it would cost too much, and is left to the sweeps.
-    bool weighed;  ///< It is, and has joints, whose impulses may be of a tick that solved it.
-    Range steps;
-    int products;
+    bool solvable = false;  ///< Else it would cost too much, and is left to the sweeps.
+    Range steps{0, 0};
+    int products = 0;
   };
 
   BodyMatrix<D> matrix;
   std::vector<HeldPair> held;              ///< Contacts in the order of the colouring, then joints.
-  std::vector<int> held_in;                ///< By held pair, its island; -1: left to the sweeps.
-  std::vector<int> group_of;               ///< By held pair in an island: the first of its points'.
+  std::vector<int> held_in;                ///< By held pair with groups, its island; else -1.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.
   std::vector<std::pair<int, int>> pairs_before;
-  std::vector<int> beside;  ///< By pair: BodyMatrix::beside.
-  std::vector<Plan> plans;  ///< By island.
+  std::vector<int> beside;  ///< By pair of nodes: BodyMatrix::beside.
+  std::vector<Plan> plans;  ///< By numbered island.
   std::vector<Island> islands;
   std::vector<IslandRows<D>> groups;       ///< Island by island.
   std::vector<IslandRow<D>> rows;          ///< Those of a group beside one another.
@@ -140,15 +144,21 @@ class IslandSolver {
   std::vector<Source> sources;             ///< By group.
   std::vector<std::uint32_t> body_of;      ///< By node, the slot.
   std::vector<std::uint32_t> tree;         ///< By slot: union-find of those that hold each other.
-  std::vector<int> node_of;                ///< By slot; -1: in no island that is solved.
-  std::vector<int> island_of;              ///< By slot, then by group while they are listed.
+  std::vector<int> node_of;                ///< By slot; -1: in no island that has nodes.
+  std::vector<int> island_of;              ///< By slot; -1: nothing holds it.
   std::vector<Vector> change;              ///< By node: of the velocity, m/s and rad/s.
   std::vector<Vector> correction;          ///< By node: speed for positions alone.
   std::vector<std::uint32_t> loaded;       ///< Slots of bodies whose load calls for this solver.
   bool acts = false;                       ///< In this tick, on some island.
-  bool planned = false;                    ///< What holds has its islands' plans and groups.
   bool only_thin = false;                  ///< What was planned holds for thin islands alone.
   IslandWork work;
+
+  /// The island of a pair; -1 where neither of the two moves.
+  int island_at(const HeldPair& pair) const { return island_of[pair.a_moves ? pair.a : pair.b]; }
+  bool is_numbered(const HeldPair& pair) const {
+    const int at = island_at(pair);
+    return at >= 0 && islands[static_cast<std::size_t>(at)].numbered;
+  }
 
   /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and
   /// `correction`, with which nothing moves faster than `push_speed_max`, m/s.

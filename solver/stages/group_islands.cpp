@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "solver/stages/island_rows.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/union_find.hpp"
 
@@ -54,7 +55,7 @@ static bool list_held(StepScratch<D>& scratch) {
   return same;
 }
 
-/// Islands in the order of their lowest slots, their nodes in the order of the slots.
+/// Islands in the order of their lowest slots.
 template <int D>
 static void find_islands(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
@@ -79,30 +80,52 @@ static void find_islands(StepScratch<D>& scratch) {
       solver.islands.emplace_back();
     }
     solver.island_of[slot] = solver.island_of[root];
-    ++solver.islands[static_cast<std::size_t>(solver.island_of[root])].nodes.end;
+    ++solver.islands[static_cast<std::size_t>(solver.island_of[slot])].bodies;
   }
 }
 
 template <int D>
 static void count_pairs(IslandSolver<D>& solver) {
   for (const HeldPair& pair : solver.held) {
-    if (!pair.a_moves && !pair.b_moves) continue;
-    const std::uint32_t slot = pair.a_moves ? pair.a : pair.b;
-    auto& island = solver.islands[static_cast<std::size_t>(solver.island_of[slot])];
+    const int at = solver.island_at(pair);
+    if (at < 0) continue;
+    auto& island = solver.islands[static_cast<std::size_t>(at)];
     ++island.pairs;
     island.jointed = island.jointed || pair.lane < 0;
   }
 }
 
-/// Numbers the nodes, island after island.
+template <int D>
+static bool is_thin(const typename IslandSolver<D>::Island& island) {
+  const auto bodies = static_cast<float>(island.bodies);
+  return island.pairs <= static_cast<int>(kThinPairsPerBody * bodies) + kThinPairsMore;
+}
+
+/// Which islands are to be solved or weighed in this tick. @returns whether any is.
+/// @pre find_islands and count_pairs.
+template <int D>
+static bool want_islands(IslandSolver<D>& solver) {
+  for (auto& island : solver.islands) island.wanted = !solver.only_thin;
+  if (!solver.only_thin) return true;
+  bool any = false;
+  for (const std::uint32_t slot : solver.loaded) {
+    const int at = solver.island_of[slot];
+    if (at < 0) continue;
+    auto& island = solver.islands[static_cast<std::size_t>(at)];
+    island.wanted = island.jointed || is_thin<D>(island);
+    any = any || island.wanted;
+  }
+  return any;
+}
+
+/// Numbers the nodes of what may be solved, island after island, in the order of the slots.
 template <int D>
 static void number_nodes(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   int next = 0;
   for (auto& island : solver.islands) {
-    const int count = island.nodes.end;
     island.nodes = {next, next};
-    next += count;
+    if (island.numbered) next += island.bodies;
   }
   const auto count = static_cast<std::size_t>(next);
   solver.body_of.resize(count);
@@ -112,6 +135,7 @@ static void number_nodes(StepScratch<D>& scratch) {
   for (std::uint32_t slot = 0; slot < scratch.masses.size(); ++slot) {
     if (solver.island_of[slot] < 0) continue;
     auto& island = solver.islands[static_cast<std::size_t>(solver.island_of[slot])];
+    if (!island.numbered) continue;
     solver.node_of[slot] = island.nodes.end;
     solver.body_of[static_cast<std::size_t>(island.nodes.end++)] = slot;
   }
@@ -124,6 +148,7 @@ static bool list_pairs(IslandSolver<D>& solver) {
   std::swap(solver.pairs, solver.pairs_before);
   solver.pairs.clear();
   for (const HeldPair& pair : solver.held) {
+    if (!solver.is_numbered(pair)) continue;
     const int a = solver.node_of[pair.a];
     const int b = solver.node_of[pair.b];
     solver.pairs.push_back({a, b});
@@ -132,15 +157,7 @@ static bool list_pairs(IslandSolver<D>& solver) {
   return solver.pairs == solver.pairs_before;
 }
 
-template <int D>
-static bool is_thin(const typename IslandSolver<D>::Island& island) {
-  const auto bodies = static_cast<float>(island.nodes.end - island.nodes.begin);
-  return island.pairs <= static_cast<int>(kThinPairsPerBody * bodies) + kThinPairsMore;
-}
-
-/// Joins the nodes and plans each island; lets go of those that would cost too much, but for the
-/// guess of what is jointed: a chain that touches itself in one tick more than in the last, when it
-/// was solved at once and took a blow, would begin the sweeps with impulses that throw it away.
+/// Joins the nodes and plans each island.
 template <int D>
 static void plan_islands(IslandSolver<D>& solver) {
   solver.matrix.begin(static_cast<int>(solver.body_of.size()));
@@ -149,134 +166,56 @@ static void plan_islands(IslandSolver<D>& solver) {
     solver.beside.push_back(a >= 0 && b >= 0 ? solver.matrix.join(a, b) : -1);
   solver.plans.clear();
   for (const auto& island : solver.islands) {
+    if (!island.numbered) continue;
     auto& plan = solver.plans.emplace_back();
     const std::uint64_t before = solver.matrix.products();
-    plan = {false, false, {0, 0}, 0};
-    if (!solver.only_thin || is_thin<D>(island))
-      plan.taken = solver.matrix.analyse(island.nodes, kProductsPerPair * island.pairs, plan.steps);
-    plan.weighed = !plan.taken && island.jointed;
+    plan.solvable =
+        solver.matrix.analyse(island.nodes, kProductsPerPair * island.pairs, plan.steps);
     plan.products = static_cast<int>(solver.matrix.products() - before);
   }
 }
 
 template <int D>
 static void follow_plans(IslandSolver<D>& solver) {
-  for (std::size_t i = 0; i < solver.islands.size(); ++i) {
-    auto& island = solver.islands[i];
-    island.steps = solver.plans[i].steps;
-    island.products = solver.plans[i].products;
-    const bool has_groups = solver.plans[i].taken || solver.plans[i].weighed;
-    for (int n = island.nodes.begin; n < island.nodes.end && !has_groups; ++n)
-      solver.island_of[solver.body_of[static_cast<std::size_t>(n)]] = -1;
-  }
-}
-
-/// The island of a pair, or -1 where it is left to the sweeps.
-template <int D>
-static int island_of(const IslandSolver<D>& solver, const HeldPair& pair) {
-  if (solver.node_of[pair.a] >= 0) return solver.island_of[pair.a];
-  return solver.node_of[pair.b] >= 0 ? solver.island_of[pair.b] : -1;
-}
-
-/// Where the groups of each island begin; counts of groups and joints become ranges.
-template <int D>
-static void place_groups(IslandSolver<D>& solver) {
-  solver.held_in.clear();
-  for (const HeldPair& pair : solver.held) {
-    const int at = island_of(solver, pair);
-    solver.held_in.push_back(at);
-    if (at < 0) continue;
-    auto& island = solver.islands[static_cast<std::size_t>(at)];
-    island.groups.end += pair.points;
-    if (pair.lane < 0) ++island.joints.end;
-  }
-  int next = 0;
+  auto plan = solver.plans.begin();
   for (auto& island : solver.islands) {
-    const int count = island.groups.end;
-    island.groups = {next, next};
-    next += count;
-    island.joints = {next - island.joints.end, next};
+    island.solvable = false;
+    if (!island.numbered) continue;
+    island.steps = plan->steps;
+    island.products = plan->products;
+    island.solvable = plan->solvable;
+    ++plan;
   }
-  solver.groups.resize(static_cast<std::size_t>(next));
-  solver.sources.resize(static_cast<std::size_t>(next));
 }
 
-/// Lists the groups of rows, island after island, each with room for all the rows it may have.
+/// Plans what is wanted, beside what was in the ticks before where the same still holds. Lets go of
+/// what would cost too much.
 template <int D>
-static void list_groups(IslandSolver<D>& solver) {
-  place_groups(solver);
-  solver.group_of.clear();
-  for (std::size_t i = 0; i < solver.held.size(); ++i) {
-    const HeldPair& pair = solver.held[i];
-    solver.group_of.push_back(-1);
-    if (solver.held_in[i] < 0) continue;
-    auto& island = solver.islands[static_cast<std::size_t>(solver.held_in[i])];
-    solver.group_of.back() = island.groups.end;
-    const int a = solver.node_of[pair.a];
-    const int b = solver.node_of[pair.b];
-    for (int point = 0; point < pair.points; ++point) {
-      const auto group = static_cast<std::size_t>(island.groups.end++);
-      solver.groups[group] = {a, b, solver.beside[i], 0, 0, pair.lane >= 0, 0.0, {}, {}};
-      solver.sources[group] = {pair.place, pair.lane, point};
-    }
+static void plan_wanted(StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  bool more = false;
+  for (auto& island : solver.islands) {
+    more = more || (island.wanted && !island.planned);
+    island.planned = island.planned || island.wanted;
+    island.numbered = island.planned && (!solver.only_thin || is_thin<D>(island));
   }
-  int rows = 0;
-  for (IslandRows<D>& group : solver.groups) {
-    group.first = rows;
-    rows += group.is_contact ? 1 + Dim<D>::kTangents : Dim<D>::kFreedoms;
-  }
-  solver.rows.resize(static_cast<std::size_t>(rows));
-  solver.tensions.reserve(2 * solver.groups.size());
+  if (!more) return;
+  number_nodes(scratch);
+  if (!list_pairs(solver)) plan_islands(solver);
+  follow_plans(solver);
+  list_groups(scratch);
 }
 
-/// Whether an island is solved at once in this tick, or its guess weighed, if it is `wanted`.
-template <int D>
-static void begin_island(const IslandSolver<D>& solver, bool wanted, std::size_t at,
-                         typename IslandSolver<D>::Island& island) {
-  const bool any = wanted && island.groups.begin < island.groups.end;
-  island.taken = any && solver.plans[at].taken;
-  island.weighed = any && solver.plans[at].weighed;
-}
-
-/// What is each island's own in this tick: its greatest mass and inertia, and how much it may cost.
+/// What is each island's own in this tick: whether it is solved, its greatest mass and inertia, and
+/// how much it may cost.
 template <int D>
 static void begin_islands(StepScratch<D>& scratch) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  for (std::size_t at = 0; at < solver.islands.size(); ++at) {
-    auto& island = solver.islands[at];
+  for (auto& island : scratch.islands_solved.islands) {
+    island.taken = island.wanted && island.solvable;
+    island.weighed = island.wanted && !island.solvable && island.jointed;
     island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
-    begin_island(solver, !solver.only_thin, at, island);
     island.swept = island.stirred = island.corrects = false;
-    island.mass = island.inertia = 0.0f;
-    for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
-      const BodyMass<D>& mass = scratch.masses[solver.body_of[static_cast<std::size_t>(n)]];
-      island.mass = max(island.mass, 1.0f / mass.inverse_mass);
-      for (int i = 0; i < Dim<D>::kSpin; ++i)
-        if (const float inverse = mass.inverse_inertia.m[i * (Dim<D>::kSpin + 1)]; inverse > 0.0f)
-          island.inertia = max(island.inertia, 1.0f / inverse);
-    }
-  }
-}
-
-/// Whether any island is to be solved, before it is planned. @pre find_islands and count_pairs.
-template <int D>
-static bool any_wanted(const IslandSolver<D>& solver) {
-  if (!solver.only_thin) return true;
-  return std::any_of(solver.loaded.begin(), solver.loaded.end(), [&](std::uint32_t slot) {
-    const int at = solver.island_of[slot];
-    if (at < 0) return false;
-    const auto& island = solver.islands[static_cast<std::size_t>(at)];
-    return island.jointed || is_thin<D>(island);
-  });
-}
-
-/// Takes the islands of loaded bodies. @pre begin_islands.
-template <int D>
-static void take_loaded(IslandSolver<D>& solver) {
-  for (const std::uint32_t slot : solver.loaded) {
-    if (solver.island_of[slot] < 0) continue;
-    const auto at = static_cast<std::size_t>(solver.island_of[slot]);
-    begin_island(solver, true, at, solver.islands[at]);
+    if (island.taken || island.weighed) find_heaviest(scratch, island);
   }
 }
 
@@ -291,8 +230,9 @@ static void begin_grouping(const Tuning& tuning, IslandSolver<D>& solver) {
   solver.island_of.clear();
 }
 
-/// Sorts what touches or is jointed into islands and plans how each is solved at once. What holds
-/// the same as in the tick before is sorted as it was: a cache, which changes no bit.
+/// Sorts what touches or is jointed into islands and plans how each that is wanted is solved at
+/// once. What holds the same as in the tick before is sorted as it was: a cache, which changes no
+/// bit.
 ///
 /// Reads contact blocks, joint rows, masses and which bodies are loaded; writes the island solver.
 /// Serial, in the order of the colouring and of the slots.
@@ -303,19 +243,11 @@ void group_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   if (!list_held<D, W>(scratch)) {
     find_islands(scratch);
     count_pairs(solver);
-    solver.planned = false;
   }
-  solver.acts = any_wanted(solver);
+  solver.acts = want_islands(solver);
   if (!solver.acts) return;
-  if (!solver.planned) {
-    number_nodes(scratch);
-    if (!list_pairs(solver)) plan_islands(solver);
-    follow_plans(solver);
-    list_groups(solver);
-    solver.planned = true;
-  }
+  plan_wanted(scratch);
   begin_islands(scratch);
-  take_loaded(solver);
 }
 
 template <int D, int W>

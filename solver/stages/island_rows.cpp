@@ -29,7 +29,7 @@ static Vec<N> lane_of(const Vec<N, L>& lanes, int lane) {
   return one;
 }
 
-/// The rows of a contact point, of which the first `count` are wanted: its normal, its tangents.
+/// The rows of a contact point: its normal, and its tangents where it rubs.
 /// @pre the block's arms are of the present poses.
 template <int D, int W>
 static void gather_point(const StepContext<D>& context, const StepScratch<D>& scratch,
@@ -48,6 +48,8 @@ static void gather_point(const StepContext<D>& context, const StepScratch<D>& sc
     group.arm_a[i] = static_cast<Wide>(a_turns ? r_a[i] : 0.0f);
     group.arm_b[i] = static_cast<Wide>(b_turns ? r_b[i] : 0.0f);
   }
+  group.friction = static_cast<Wide>(block.friction.raw[lane]);
+  group.count = group.friction > 0.0 ? 1 + Dim<D>::kTangents : 1;
   for (int r = 0; r < group.count; ++r) {
     const Vec<D> direction = lane_of(r == 0 ? block.normal : block.tangent[r - 1], lane);
     const Spin<D> turn_a = moment(r_a, direction);

@@ -5,6 +5,20 @@
 
 namespace cycloid::solver {
 
+/// Lists the groups of rows of what is solvable, island after island, and of what is only weighed
+/// just the joints. @pre islands are planned.
+template <int D>
+void list_groups(StepScratch<D>& scratch);
+
+/// Lists nodes and groups of an island that the sweeps have, all of them, behind those of the
+/// others: its guess is to be weighed. They stay as long as the same holds.
+template <int D>
+void list_weighed(StepScratch<D>& scratch, typename IslandSolver<D>::Island& island);
+
+/// Writes the greatest mass and inertia of an island's nodes.
+template <int D>
+void find_heaviest(const StepScratch<D>& scratch, typename IslandSolver<D>::Island& island);
+
 /// The rows, tensions and velocities of an island as the warm start has left them, from blocks and
 /// joint rows. @pre the arms of the blocks are of the present poses.
 template <int D, int W>

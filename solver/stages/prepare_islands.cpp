@@ -27,7 +27,7 @@ static void find_swept(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   const auto sweep = [&](std::uint32_t slot) {
-    if (solver.node_of[slot] >= 0 && solver.island_of[slot] >= 0)
+    if (solver.island_of[slot] >= 0)
       solver.islands[static_cast<std::size_t>(solver.island_of[slot])].swept = true;
   };
   for (const JointRow<D>& row : scratch.joint_rows) {
@@ -40,10 +40,12 @@ static void find_swept(StepScratch<D>& scratch) {
     if (pair.lane < 0) break;
     auto& block = blocks[static_cast<std::size_t>(pair.place)];
     const int at = solver.held_in[i];
-    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken)
+    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken) {
       block.left |= LaneBits{1} << pair.lane;
-    else if (is_swept(block, pair.lane))
-      solver.islands[static_cast<std::size_t>(at)].swept = true;
+      continue;
+    }
+    block.taken |= LaneBits{1} << pair.lane;
+    if (is_swept(block, pair.lane)) solver.islands[static_cast<std::size_t>(at)].swept = true;
   }
 }
 
@@ -59,16 +61,7 @@ static void take_contact(float touch, int lane, ContactBlock<D, W>& block) {
   block.impulse_scale.raw[lane] = 0.0f;
 }
 
-/// Gives the groups of a contact their friction.
-template <int D>
-static void give_friction(Wide friction, std::span<IslandRows<D>> groups) {
-  for (IslandRows<D>& group : groups) {
-    group.friction = friction;
-    group.count = friction > 0.0 ? 1 + Dim<D>::kTangents : 1;
-  }
-}
-
-/// Takes what islands hold from the soft sweeps, and gives the groups of contacts their friction.
+/// Takes what islands hold from the soft sweeps.
 template <int D, int W>
 static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
@@ -76,21 +69,15 @@ static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
   const float touch = kTouch * context.tuning.slop;
   for (std::size_t i = 0; i < solver.held.size(); ++i) {
     const int at = solver.held_in[i];
-    if (at < 0) continue;
-    const bool taken = solver.islands[static_cast<std::size_t>(at)].taken;
+    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken) continue;
     const HeldPair& pair = solver.held[i];
     const auto place = static_cast<std::size_t>(pair.place);
-    if (pair.lane < 0) {
-      if (!taken) continue;
-      scratch.joint_rows[place].in_island = true;
-      scratch.joint_rows[place].solved_directly = true;
+    if (pair.lane >= 0) {
+      take_contact(touch, pair.lane, blocks[place]);
       continue;
     }
-    ContactBlock<D, W>& block = blocks[place];
-    if (taken) take_contact(touch, pair.lane, block);
-    give_friction<D>(static_cast<Wide>(block.friction.raw[pair.lane]),
-                     {&solver.groups[static_cast<std::size_t>(solver.group_of[i])],
-                      static_cast<std::size_t>(pair.points)});
+    scratch.joint_rows[place].in_island = true;
+    scratch.joint_rows[place].solved_directly = true;
   }
 }
 

@@ -43,12 +43,14 @@ struct Unrest {
   LaneBits stirs = 0;
 };
 
-/// Nothing is settled yet but what belongs to no island.
+/// Nothing is settled that belongs to no island. Lanes of no contact go with the others, or a block
+/// would be one of which only some lanes are.
 template <int D, int W>
 static Unrest begin_settling(ContactBlocks<D, W>& contacts) {
   Unrest all;
   for (ContactBlock<D, W>& block : contacts.blocks) {
-    block.settled = kAllLanes<W> & ~block.left;
+    block.settled = block.taken != 0 ? kAllLanes<W> & ~block.left : 0;
+    if (block.taken == 0) continue;
     all.misses |= block.misses;
     all.stirs |= block.stirs;
   }
@@ -92,6 +94,7 @@ template <int D, int W>
 static void weigh_island(const StepContext<D>& context, StepScratch<D>& scratch,
                          typename IslandSolver<D>::Island& island) {
   if (!any_joint_misses(context, scratch, island, kWild)) return;
+  if (!island.grouped) list_weighed(scratch, island);
   gather_island<D, W>(context, scratch, island);
   scratch.islands_solved.weaken_guess(island, scratch.masses);
   scatter_island<D, W>(scratch, island);
@@ -134,23 +137,20 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   ContactKernels<D, W>::look_for_rest(
       context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
   const Unrest all = begin_settling<D, W>(contacts);
-  bool all_rest = true;
   for (auto& island : solver.islands) {
     if (island.weighed) weigh_island<D, W>(context, scratch, island);
     if (!island.taken) continue;
     island.corrects = false;
     island.stirred = is_restless<D, W>(context, scratch, all, island);
     if (island.stirred) {
-      all_rest = false;
       solve_island<D, W>(context, scratch, island);
       continue;
     }
     ++solver.work.rests;
     hand_over<D, W>(island, false, true, scratch);
   }
-  if (!all_rest) return;
-  // Lanes of no contact do not make a block one of which only some lanes are settled.
-  for (ContactBlock<D, W>& block : contacts.blocks) block.settled = 0;
+  for (ContactBlock<D, W>& block : contacts.blocks)
+    if ((block.settled & block.taken) == 0) block.settled = 0;
 }
 
 /// Moves out of overlap what was solved at once, and leaves its velocities alone.

@@ -1,0 +1,130 @@
+#include "solver/stages/island_rows.hpp"
+
+namespace cycloid::solver {
+
+/// Whether a pair has groups from the start of a tick: of what only the sweeps solve, just joints
+/// do, whose speeds tell whether the guess of all is to be weighed.
+template <int D>
+static bool is_listed(const typename IslandSolver<D>::Island& island, const HeldPair& pair) {
+  return island.solvable || (island.planned && pair.lane < 0);
+}
+
+/// Where the groups of each island begin; counts of groups and joints become ranges.
+template <int D>
+static void place_groups(IslandSolver<D>& solver) {
+  solver.held_in.clear();
+  for (auto& island : solver.islands) island.groups = island.joints = {0, 0};
+  for (const HeldPair& pair : solver.held) {
+    const int at = solver.island_at(pair);
+    solver.held_in.push_back(-1);
+    if (at < 0) continue;
+    auto& island = solver.islands[static_cast<std::size_t>(at)];
+    if (!is_listed<D>(island, pair)) continue;
+    solver.held_in.back() = at;
+    island.groups.end += pair.points;
+    if (pair.lane < 0) ++island.joints.end;
+  }
+  int next = 0;
+  for (auto& island : solver.islands) {
+    const int count = island.groups.end;
+    island.groups = {next, next};
+    next += count;
+    island.joints = {next - island.joints.end, next};
+    island.grouped = island.solvable;
+  }
+  solver.groups.resize(static_cast<std::size_t>(next));
+  solver.sources.resize(static_cast<std::size_t>(next));
+}
+
+/// The groups of a pair, from `first` on; their rows are to be placed.
+template <int D>
+static void list_points(const HeldPair& pair, int beside, std::size_t first,
+                        IslandSolver<D>& solver) {
+  const int a = solver.node_of[pair.a];
+  const int b = solver.node_of[pair.b];
+  for (int point = 0; point < pair.points; ++point) {
+    const std::size_t group = first + static_cast<std::size_t>(point);
+    solver.groups[group] = {a, b, beside, 0, 0, pair.lane >= 0, 0.0, {}, {}};
+    solver.sources[group] = {pair.place, pair.lane, point};
+  }
+}
+
+/// Gives groups room for all the rows that each may have, behind those of the others.
+template <int D>
+static void place_rows(std::size_t first_group, std::size_t rows, IslandSolver<D>& solver) {
+  for (std::size_t g = first_group; g < solver.groups.size(); ++g) {
+    IslandRows<D>& group = solver.groups[g];
+    group.first = static_cast<int>(rows);
+    rows += group.is_contact ? 1 + Dim<D>::kTangents : Dim<D>::kFreedoms;
+  }
+  solver.rows.resize(rows);
+  solver.tensions.reserve(2 * solver.groups.size());
+}
+
+template <int D>
+void list_groups(StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  place_groups(solver);
+  std::size_t next_pair = 0;
+  for (std::size_t i = 0; i < solver.held.size(); ++i) {
+    const HeldPair& pair = solver.held[i];
+    const int beside = solver.is_numbered(pair) ? solver.beside[next_pair++] : -1;
+    if (solver.held_in[i] < 0) continue;
+    auto& island = solver.islands[static_cast<std::size_t>(solver.held_in[i])];
+    list_points(pair, beside, static_cast<std::size_t>(island.groups.end), solver);
+    island.groups.end += pair.points;
+  }
+  place_rows(0, 0, solver);
+}
+
+template <int D>
+void find_heaviest(const StepScratch<D>& scratch, typename IslandSolver<D>::Island& island) {
+  island.mass = island.inertia = 0.0f;
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    const std::uint32_t slot = scratch.islands_solved.body_of[static_cast<std::size_t>(n)];
+    const BodyMass<D>& mass = scratch.masses[slot];
+    island.mass = max(island.mass, 1.0f / mass.inverse_mass);
+    for (int i = 0; i < Dim<D>::kSpin; ++i)
+      if (const float inverse = mass.inverse_inertia.m[i * (Dim<D>::kSpin + 1)]; inverse > 0.0f)
+        island.inertia = max(island.inertia, 1.0f / inverse);
+  }
+}
+
+template <int D>
+void list_weighed(StepScratch<D>& scratch, typename IslandSolver<D>::Island& island) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  const auto at = static_cast<int>(&island - solver.islands.data());
+  island.nodes.begin = island.nodes.end = static_cast<int>(solver.body_of.size());
+  for (std::uint32_t slot = 0; slot < scratch.masses.size(); ++slot) {
+    if (solver.island_of[slot] != at) continue;
+    solver.node_of[slot] = island.nodes.end++;
+    solver.body_of.push_back(slot);
+  }
+  solver.change.resize(solver.body_of.size());
+  solver.correction.resize(solver.body_of.size());
+  const std::size_t first = solver.groups.size();
+  int joints = 0;
+  for (const HeldPair& pair : solver.held) {
+    if (solver.island_at(pair) != at) continue;
+    const std::size_t next = solver.groups.size();
+    solver.groups.resize(next + static_cast<std::size_t>(pair.points));
+    solver.sources.resize(solver.groups.size());
+    list_points(pair, -1, next, solver);
+    if (pair.lane < 0) ++joints;
+  }
+  const auto end = static_cast<int>(solver.groups.size());
+  island.groups = {static_cast<int>(first), end};
+  island.joints = {end - joints, end};
+  island.grouped = true;
+  place_rows(first, solver.rows.size(), solver);
+  find_heaviest(scratch, island);
+}
+
+template void list_groups(StepScratch<2>&);
+template void list_groups(StepScratch<3>&);
+template void find_heaviest(const StepScratch<2>&, IslandSolver<2>::Island&);
+template void find_heaviest(const StepScratch<3>&, IslandSolver<3>::Island&);
+template void list_weighed(StepScratch<2>&, IslandSolver<2>::Island&);
+template void list_weighed(StepScratch<3>&, IslandSolver<3>::Island&);
+
+}  // namespace cycloid::solver
