@@ -1,6 +1,7 @@
 #pragma once
 
 #include <cstddef>
+#include <cstdint>
 #include <utility>
 #include <vector>
 
@@ -39,6 +40,14 @@ class SharedArray {
   std::size_t size() const { return static_cast<std::size_t>(end_ - begin_); }
   bool empty() const { return begin_ == end_; }
 
+  /// The number that `make` makes of the array, and of nothing else; made once until it is edited,
+  /// whichever copies ask. Always the same `make` for an array.
+  template <class Make>
+  std::uint64_t kept_number(Make&& make) const {
+    if (block_ == nullptr) return make();
+    return block_->number.get(make);
+  }
+
   /// Whether both are one array, not only equal ones.
   bool is_same_as(const SharedArray& other) const { return block_ == other.block_; }
 
@@ -54,6 +63,7 @@ class SharedArray {
   template <class Change>
   decltype(auto) edit(Change&& change) {
     own();
+    block_->number.forget();
     const Refresh after{*this};
     return change(block_->items);
   }
@@ -62,6 +72,7 @@ class SharedArray {
   struct Block {
     std::vector<T> items;
     OwnerCount owners;
+    KeptNumber number;
   };
   struct Refresh {
     SharedArray& array;
@@ -73,7 +84,7 @@ class SharedArray {
   void own() {
     if (block_ != nullptr && block_->owners.is_one()) return;
     SharedArray mine;
-    mine.block_ = new Block{std::vector<T>(begin_, end_), {}};
+    mine.block_ = new Block{std::vector<T>(begin_, end_), {}, {}};
     swap(mine);
   }
   void swap(SharedArray& other) noexcept {

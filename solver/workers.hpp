@@ -41,6 +41,26 @@ class OwnerCount {
   std::atomic<std::uint32_t> owners_{1};
 };
 
+/// A number that is made of what does not change, once. Two threads that ask for it at the same
+/// time may both make it, and make the same.
+class KeptNumber {
+ public:
+  template <class Make>
+  std::uint64_t get(Make&& make) {
+    std::uint64_t number = number_.load(std::memory_order_relaxed);
+    if (number != kNotMade) return number;
+    number = make();
+    number_.store(number, std::memory_order_relaxed);
+    return number;
+  }
+  /// @pre nobody else asks for it.
+  void forget() { number_.store(kNotMade, std::memory_order_relaxed); }
+
+ private:
+  static constexpr std::uint64_t kNotMade = 0;  // Were it made 0, it would be made each time.
+  std::atomic<std::uint64_t> number_{kNotMade};
+};
+
 /// Things that are lent for a while, from any thread, and kept for whoever comes next: who borrows
 /// gets one that somebody gave back, whatever is left in it, or a new one.
 template <class T>

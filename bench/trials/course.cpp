@@ -66,6 +66,7 @@ static void take_accuracy(const solver::WorldState<D>& state, bool late, Course&
   const peers::Accuracy accuracy = peers::measure_accuracy<D>(state, poses);
   const auto overlap = static_cast<double>(accuracy.overlap_m);
   course.overlap_max_m = std::max(course.overlap_max_m, overlap);
+  course.gaps_m.push_back(static_cast<double>(accuracy.gap_m));
   if (!late) return;
   course.overlap_end_m = std::max(course.overlap_end_m, overlap);
   course.gap_end_m = std::max(course.gap_end_m, static_cast<double>(accuracy.gap_m));

@@ -73,7 +73,8 @@ template <int D, int W>
   for (std::uint32_t p = 0; p < block.point_count; ++p) {
     const auto& point = block.points[p];
     missing = max(missing, missing_of(context, block, point, a, b));
-    deepest = max(deepest, -(point.gap + L(context.tuning.slop)));
+    const L overlap = -(point.gap + L(context.tuning.slop));
+    deepest = max(deepest, select(point.normal_mass > L(0.0f), overlap, L(0.0f)));
   }
   const L overlap = rate * deepest - L(bounds.overlap);
   block.misses = lanes_above_zero(max(missing - L(bounds.misses), overlap));

@@ -103,7 +103,7 @@ class IslandSolver {
     int pairs;                   ///< Contacts and joints.
     float mass;                  ///< Of the heaviest body, kg.
     float inertia;               ///< The greatest, kg m^2.
-    bool jointed;                ///< Some of those are joints.
+    int joint_count;             ///< Of those.
     bool wanted;                 ///< In this tick it is to be solved, or weighed.
     bool planned;                ///< It is known whether and how to, as long as the same holds.
     bool numbered;               ///< It was looked at closely: it has nodes from the start.

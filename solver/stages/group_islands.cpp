@@ -91,14 +91,28 @@ static void count_pairs(IslandSolver<D>& solver) {
     if (at < 0) continue;
     auto& island = solver.islands[static_cast<std::size_t>(at)];
     ++island.pairs;
-    island.jointed = island.jointed || pair.lane < 0;
+    if (pair.lane < 0) ++island.joint_count;
   }
+}
+
+static bool would_be_thin(int pairs, int bodies) {
+  return pairs <= static_cast<int>(kThinPairsPerBody * static_cast<float>(bodies)) + kThinPairsMore;
 }
 
 template <int D>
 static bool is_thin(const typename IslandSolver<D>::Island& island) {
-  const auto bodies = static_cast<float>(island.bodies);
-  return island.pairs <= static_cast<int>(kThinPairsPerBody * bodies) + kThinPairsMore;
+  return would_be_thin(island.pairs, island.bodies);
+}
+
+/// Whether the guess of an island that the sweeps have may be of a tick that solved it at once, and
+/// so be weighed: without its contacts it would be thin, as a chain is that lies on itself and a
+/// net is not. A few joints in a large heap are not worth to gather all of it in every substep.
+template <int D>
+static bool may_be_weighed(const typename IslandSolver<D>::Island& island) {
+  constexpr int kSmall = 256;
+  const bool many_joints = 4 * island.joint_count >= island.bodies;
+  return island.joint_count > 0 && would_be_thin(island.joint_count, island.bodies) &&
+         (many_joints || island.bodies <= kSmall);
 }
 
 /// Which islands are to be solved or weighed in this tick. @returns whether any is.
@@ -112,7 +126,7 @@ static bool want_islands(IslandSolver<D>& solver) {
     const int at = solver.island_of[slot];
     if (at < 0) continue;
     auto& island = solver.islands[static_cast<std::size_t>(at)];
-    island.wanted = island.jointed || is_thin<D>(island);
+    island.wanted = is_thin<D>(island) || may_be_weighed<D>(island);
     any = any || island.wanted;
   }
   return any;
@@ -212,7 +226,7 @@ template <int D>
 static void begin_islands(StepScratch<D>& scratch) {
   for (auto& island : scratch.islands_solved.islands) {
     island.taken = island.wanted && island.solvable;
-    island.weighed = island.wanted && !island.solvable && island.jointed;
+    island.weighed = island.wanted && !island.solvable && may_be_weighed<D>(island);
     island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
     island.swept = island.stirred = island.corrects = false;
     if (island.taken || island.weighed) find_heaviest(scratch, island);

@@ -167,6 +167,7 @@ TEST_P(History, CarriedThroughOtherSimulationsItGoesOnAsItWas) {
     moved.save(saved);
     bearer = std::move(moved);
     play(scene, stays);
+    ASSERT_EQ(stays.statistics().rows, bearer.statistics().rows) << "tick " << stays.tick();
     ASSERT_EQ(stays.digest(), bearer.digest())
         << "tick " << stays.tick() << ": " << first_difference(stays, bearer);
   }

@@ -46,6 +46,7 @@ inline void expect_workers_and_lanes_invisible(const std::string& name,
       ASSERT_TRUE(other.step({}).ok());
       ASSERT_EQ(one.digest(), other.digest()) << name << ", tick " << tick << ", workers "
                                               << setting.workers << ", lanes " << setting.lanes;
+      ASSERT_EQ(one.statistics().rows, other.statistics().rows) << name << ", tick " << tick;
     }
   }
 }

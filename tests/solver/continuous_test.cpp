@@ -110,4 +110,29 @@ TEST(Continuous, ItDoesNotHoldWhatSlidesOrRolls) {
   EXPECT_NEAR(view(world, id).position[0], 300.0f, 0.5f);
 }
 
+// A bar swings a ball round, which slides outwards on it: what the contact solver has made of the
+// two is the way that they go.
+TEST(Continuous, ItDoesNotHoldWhatTouchesAndTurns) {
+  const auto end = [](std::uint32_t continuous, float out) {
+    WorldDef<2> def = restless();
+    def.tuning.continuous = continuous;
+    def.materials = {{0.0f, 0.0f, 0.0f}};
+    World<2> world = make_world(def);
+    BodyDef<2> bar;
+    bar.kind = BodyKind::kKinematic;
+    bar.spin = {{0.25f}};
+    add(world, bar, box(3.0f, 0.1f));
+    BodyDef<2> slider;
+    slider.position = {{1.0f, 0.3005f}};
+    slider.velocity = {{out, 0.26f}};
+    const BodyId id = add(world, slider, ball<2>(0.2f));
+    step(world, 1);
+    return view(world, id).position;
+  };
+  for (const float out : {6.5f, 8.0f, 10.0f}) {
+    EXPECT_EQ(end(1, out)[0], end(0, out)[0]) << out;
+    EXPECT_EQ(end(1, out)[1], end(0, out)[1]) << out;
+  }
+}
+
 }  // namespace cycloid::solver
