@@ -186,4 +186,22 @@ inline void make_canonical(std::byte* words, const std::uint32_t* floats) {
   std::memcpy(words, &word, sizeof word);
 }
 
+/// Whether `make_canonical` would change no number of all these, whole fours, and none is a NaN.
+inline bool is_canonical(std::span<const std::byte> words, const std::uint32_t* floats) {
+  typedef std::uint32_t Words __attribute__((vector_size(16)));
+  constexpr std::uint32_t kSign = 0x80000000u;
+  Words found{};
+  for (std::size_t at = 0; at < words.size(); at += sizeof(Words)) {
+    Words word;
+    Words is_float;
+    std::memcpy(&word, words.data() + at, sizeof word);
+    std::memcpy(&is_float, floats + at / sizeof(std::uint32_t), sizeof is_float);
+    // The sum has its highest bit where the magnitude is that of a NaN, above 0x7f800000.
+    const Words nan = (word & ~kSign) + 0x007fffffu;
+    const Words negative_zero = std::bit_cast<Words>(word == kSign);
+    found |= (nan | negative_zero) & is_float;
+  }
+  return ((found[0] | found[1] | found[2] | found[3]) & kSign) == 0;
+}
+
 }  // namespace cycloid::solver

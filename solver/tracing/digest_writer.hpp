@@ -33,6 +33,7 @@ class DigestWriter {
       // In one run the order of numbers is that of memory, on machines of either byte order.
       if constexpr (kWordRuns<R>.count == 1 && float_words<R>() == RecordWords<R>{})
         return raw(std::as_bytes(records));
+      if constexpr (kWordRuns<R>.count == 1) records = as_in_memory(records);
       for (; records.size() >= 4; records = records.subspan(4)) four(records.first(4));
     }
     for (const R& record : records) visit_words(record, *this);
@@ -47,6 +48,24 @@ class DigestWriter {
   void raw(std::span<const std::byte> bytes) {
     flush();
     if (!bytes.empty()) XXH3_64bits_update(&state_, bytes.data(), bytes.size());
+  }
+
+  /// All whole fours of records, from memory where they are canonical there, as most are: to look
+  /// is cheaper than to copy. @returns the rest.
+  template <class R>
+  std::span<const R> as_in_memory(std::span<const R> records) {
+    while (records.size() >= 4) {
+      std::size_t canonical = 0;
+      while (records.size() - canonical >= 4 &&
+             is_canonical(std::as_bytes(records.subspan(canonical, 4)), kFloatWords<R>.data()))
+        canonical += 4;
+      raw(std::as_bytes(records.first(canonical)));
+      records = records.subspan(canonical);
+      if (records.size() < 4) break;
+      four(records.first(4));
+      records = records.subspan(4);
+    }
+    return records;
   }
 
   template <class R>
