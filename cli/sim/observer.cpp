@@ -60,7 +60,7 @@ void Observer::heard(const protocol::ServerMessage& message) {
   }
   ++timeline_;
   last_frame_ = exact_tick_ = notice->value;
-  verified_tick_ = 0;
+  verified_tick_ = certain_tick_ = 0;
 }
 
 /// What it hears was sent a while ago, so this is never too strict.
@@ -127,7 +127,7 @@ std::uint64_t Observer::new_tick(const client::Follower& follower) {
   const std::uint64_t tick = progress.last_tick;
   if (tick == verified_tick_ || tick == 0) return 0;
   const auto is_there = [&] { return ledger_->at(tick, timeline_) != nullptr; };
-  if (follow_until(verified_tick_, is_there)) return tick;
+  if (follow_until(certain_tick_, is_there)) return tick;
   wrong(Invariant::kDigests, "is at tick " + std::to_string(tick) + ", which is not confirmed");
   return 0;
 }
@@ -136,28 +136,31 @@ void Observer::check_state(const client::Follower& follower) {
   const std::uint64_t tick = new_tick(follower);
   if (tick == 0 || follower.simulation().tick() != tick) return;
   const std::uint64_t digest = follower.simulation().digest();
-  const bool is_it = follow_until(verified_tick_, [&] {
-    const protocol::LogTick* confirmed = ledger_->at(tick, timeline_);
+  const auto is_of = [&](std::size_t timeline) {
+    const protocol::LogTick* confirmed = ledger_->at(tick, timeline);
     return confirmed != nullptr && digest == confirmed->digest;
-  });
+  };
+  const bool is_it = follow_until(certain_tick_, [&] { return is_of(timeline_); });
   if (!is_it) {
     if (disturbed_) return;
     return wrong(Invariant::kDigests,
                  "its state of tick " + std::to_string(tick) + " is not the server's");
   }
   disturbed_ = false;  // What one bit did may also die out.
-  verify(tick);
+  verify(tick, has_next() && is_of(timeline_ + 1));
 }
 
-void Observer::verify(std::uint64_t tick) {
+void Observer::verify(std::uint64_t tick, bool may_be_of_next) {
   verified_tick_ = tick;
+  if (!may_be_of_next) certain_tick_ = tick;
   if (delay_ticks_ > 0) chronicle_->count(Event::kSeenLate);
 }
 
-bool Observer::is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag) const {
+bool Observer::is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag,
+                              std::size_t timeline) const {
   std::uint64_t then = tick;
-  while (then > 0 && may_lag && !is_among(pose, ledger_->poses(then, timeline_))) --then;
-  return is_among(pose, ledger_->poses(then, timeline_));
+  while (then > 0 && may_lag && !is_among(pose, ledger_->poses(then, timeline))) --then;
+  return is_among(pose, ledger_->poses(then, timeline));
 }
 
 void Observer::check_shown(const client::Follower& follower, bool may_lag) {
@@ -170,19 +173,20 @@ void Observer::check_shown(const client::Follower& follower, bool may_lag) {
                  "shows " + std::to_string(shown.size()) + " bodies of " + std::to_string(bodies));
   }
   std::uint32_t misplaced = 0;
-  const auto is_right = [&](const scenes::Pose& pose) {
-    misplaced = pose.index;
-    return is_shown_right(pose, tick, may_lag);
+  const auto is_of = [&](std::size_t timeline) {
+    if (tick > ledger_->ticks(timeline)) return false;
+    return std::ranges::all_of(shown, [&](const scenes::Pose& pose) {
+      misplaced = pose.index;
+      return is_shown_right(pose, tick, may_lag, timeline);
+    });
   };
-  const bool is_it = follow_until(verified_tick_, [&] {
-    return tick <= ledger_->ticks(timeline_) && std::ranges::all_of(shown, is_right);
-  });
+  const bool is_it = follow_until(certain_tick_, [&] { return is_of(timeline_); });
   if (!is_it) {
     return wrong(Invariant::kDigests, "shows body " + std::to_string(misplaced) + " at tick " +
                                           std::to_string(tick) + " where it was not");
   }
   chronicle_->count(Event::kQuantisedShown);
-  verify(tick);
+  verify(tick, has_next() && is_of(timeline_ + 1));
 }
 
 }  // namespace cycloid::sim

@@ -56,8 +56,12 @@ class Observer {
     }
     return true;
   }
-  bool is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag) const;
-  void verify(std::uint64_t tick);
+  bool has_next() const { return timeline_ < ledger_->timeline(); }
+  bool is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag,
+                      std::size_t timeline) const;
+  /// @param may_be_of_next  What was seen is in the next timeline, too: a state does not tell the
+  /// inputs that led to it, so who sees states alone may have gone on without being told.
+  void verify(std::uint64_t tick, bool may_be_of_next);
   void wrong(Invariant invariant, const std::string& text) {
     chronicle_->violate(invariant, name_ + ": " + text);
   }
@@ -69,6 +73,7 @@ class Observer {
   std::uint64_t last_frame_ = 0;
   std::uint64_t exact_tick_ = 0;  ///< Of the last exact state announced: frames may go on there.
   std::uint64_t verified_tick_ = 0;
+  std::uint64_t certain_tick_ = 0;  ///< The last verified one that can be of `timeline_` alone.
   std::uint64_t delay_ticks_ = 0;
   bool welcomed_ = false;
   bool excused_ = false;
