@@ -94,7 +94,8 @@ void Observer::welcomed(std::uint64_t tick, std::size_t timeline, std::uint64_t 
 }
 
 void Observer::on_exact_state(std::uint64_t tick) {
-  if (tick > ledger_->ticks(timeline_)) {
+  const auto is_there = [&] { return tick <= ledger_->ticks(timeline_); };
+  if (!follow_until(std::max(certain_tick_, last_frame_), is_there)) {
     wrong(Invariant::kFrames,
           "heard a state of tick " + std::to_string(tick) + ", which is not confirmed");
   }

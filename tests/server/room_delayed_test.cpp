@@ -141,6 +141,19 @@ TEST_F(RoomDelayed, AStateThatMendsIsNotOlderThanTheFramesBefore) {
   EXPECT_EQ(frames[0].tick, 57u);
 }
 
+TEST_F(RoomDelayed, ARewindIsToldToWhoseStateIsDueForTheFramesThatItHasSeen) {
+  open_delayed(20);
+  const PeerId id = enter(protocol::kSpectator);
+  run(75);
+  ASSERT_EQ(only<protocol::InputFrame>(hear(id)).back().tick, 55u);
+  say(id, protocol::Digest{54, 0xbad});
+  ASSERT_FALSE(room_->has_output(id)) << "the state is due, and there is none yet";
+  ASSERT_TRUE(room_->rewind(50));
+  const auto notices = only<protocol::RoomNotice>(hear(id));
+  ASSERT_EQ(notices.size(), 1u) << "it has seen five frames that were taken back";
+  EXPECT_EQ(notices[0].kind, protocol::NoticeKind::kRewound);
+}
+
 TEST_F(RoomDelayed, WhoWaitsForAKeptStateIsNotSlow) {
   RoomOptions options;
   options.spectator_delay_ticks = 20;
