@@ -48,11 +48,15 @@ class Observer {
   void on_exact_state(std::uint64_t tick);
   void check_delay(const protocol::ServerMessage& message);
   bool follows_branch(std::uint64_t seen_tick);
-  /// Goes on to later timelines, where it may, until `matches()`. @returns whether it does.
+  /// Goes on to later timelines, where it may, until `matches()`; stays where none does.
+  /// @returns whether one does.
   template <class Matches>
   bool follow_until(std::uint64_t seen_tick, Matches&& matches) {
+    const std::size_t from = timeline_;
     while (!matches()) {
-      if (!follows_branch(seen_tick)) return false;
+      if (follows_branch(seen_tick)) continue;
+      timeline_ = from;
+      return false;
     }
     return true;
   }
