@@ -190,7 +190,7 @@ void SimClient::take_welcome(const protocol::Welcome& welcome) {
     host_->room(persona_.room).used_token() = token_;
   }
   const bool is_damaged = wire_->flips_up || wire_->flips_down;
-  ticket_ = {welcome.resume, welcome.seat, wire_->era, dialed_ns_, ghosts_.empty() && !is_damaged};
+  ticket_ = {welcome.resume, wire_->seat, wire_->era, dialed_ns_, ghosts_.empty() && !is_damaged};
 }
 
 /// Its one try comes on a new connection, in time, to the same match, and no other connection of

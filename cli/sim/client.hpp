@@ -108,7 +108,7 @@ class SimClient {
   protocol::Bytes unsent_;
   Mischief mischief_;
   std::vector<scenes::SeatInput> guess_;  ///< Of the next tick, for a plant.
-  /// The seat that the last welcome gave, and how to get it back.
+  /// The seat that the last welcome gave, as the server said it, and how to get it back.
   struct Ticket {
     std::vector<std::byte> secret;
     std::int32_t seat = protocol::kSpectator;

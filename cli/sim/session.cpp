@@ -141,6 +141,7 @@ void Session::look_at(const protocol::Bytes& output) {
   if (welcome == nullptr) return;
   seat_ = welcome->seat;
   wire_->timeline = house_.ledger->timeline();
+  wire_->seat = seat_;
   chronicle_->count(Event::kWelcome);
   chronicle_->note(name() + " is welcome at tick " + std::to_string(welcome->tick) + ", seat " +
                    std::to_string(seat_));
