@@ -308,9 +308,9 @@ std::string SimClient::lacks() const {
     return "holds a state that was not found right";
   const std::uint64_t made = room.tick();
   const std::uint64_t late = observer_->delay_ticks();
-  // Who sees the match late is shown kept states, where it is shown states.
+  // Who sees the match late is shown kept states, where it is shown states, when one is due.
   const std::uint64_t between =
-      late > 0 ? settings_->limits.keyframe_ticks : settings_->limits.snapshot_ticks;
+      settings_->limits.snapshot_ticks + (late > 0 ? settings_->limits.keyframe_ticks : 0);
   const std::uint64_t most = 4 + late + (lockstep() ? 0 : between);
   if (progress.last_tick + most >= made) return "";
   return "is at tick " + std::to_string(progress.last_tick) + " of " + std::to_string(made);
