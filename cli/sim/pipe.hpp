@@ -117,9 +117,9 @@ struct Wire {
   std::size_t room = 0;
   std::size_t era = 0;  ///< Of the room that accepted it; see RoomHost.
   server::PeerAddress address = server::PeerAddress::v4({127, 0, 0, 1});  ///< Of the client.
-  std::size_t timeline = 0;  ///< Of the room's ledger when it said its welcome.
+  std::size_t timeline = 0;                  ///< Of the room's ledger when it said its welcome.
   std::int32_t seat = protocol::kSpectator;  ///< Of that welcome, whatever became of it on the way.
-  bool unwelcome = false;    ///< Its peer says nothing that a room may take for a hello.
+  bool unwelcome = false;  ///< Its peer says nothing that a room may take for a hello.
 };
 
 }  // namespace cycloid::sim

@@ -36,19 +36,32 @@ TEST(SimWorld, HoldsItsInvariantsUnderTheQuickSeeds) {
   }
 }
 
-/// 2321: acknowledgements were stalled for so long that the server built on states which a client
-/// had let go. 5324: the last fault of all is a log's, and its room ends right after the clients
-/// have come to be in sync with it. 1795452375248: a spectator who sees states alone, and late, sees
-/// one that a rewind took back and that the match came to again. 1795453399248: such a one is given
-/// an exact state of a timeline of which it was not told, for it had seen nothing of the one before.
-/// 1795453935241: a disturbed state of one that lags behind a rewind is of neither timeline.
-/// 1795454372024, 1795454377361, 1795454378360: a flipped bit of a welcome makes its seat another,
-/// and the secret beside it brings back the one that was given. 1795454371047: a kept state waits
-/// for the next tick at which states are sent.
+constexpr std::uint64_t kFailedOnce[] = {
+    // Acknowledgements were stalled for so long that the server built on states which a client had
+    // let go.
+    2321,
+    // The last fault of all is a log's, and its room ends right after the clients have come to be
+    // in sync with it.
+    5324,
+    // A spectator who sees states alone, and late, sees one that a rewind took back and that the
+    // match came to again.
+    1795452375248,
+    // Such a one is given an exact state of a timeline of which it was not told, for it had seen
+    // nothing of the one before.
+    1795453399248,
+    // A disturbed state of one that lags behind a rewind is of neither timeline.
+    1795453935241,
+    // A flipped bit of a welcome makes its seat another, and the secret beside it brings back the
+    // one that was given.
+    1795454372024,
+    1795454377361,
+    1795454378360,
+    // A kept state waits for the next tick at which states are sent.
+    1795454371047,
+};
+
 TEST(SimWorld, HoldsItsInvariantsUnderSeedsThatOnceFailed) {
-  for (const std::uint64_t seed :
-       {2321ull, 5324ull, 1795452375248ull, 1795453399248ull, 1795453935241ull, 1795454372024ull,
-        1795454377361ull, 1795454378360ull, 1795454371047ull})
+  for (const std::uint64_t seed : kFailedOnce)
     EXPECT_EQ(failure_of(simulate(draw_settings(seed))), "");
 }
 
