@@ -164,28 +164,33 @@ bool Observer::is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool
   return is_among(pose, ledger_->poses(then, timeline));
 }
 
+/// How what is shown differs from a tick of a timeline; "": it does not.
+std::string Observer::mistake_of(const std::vector<scenes::Pose>& shown, std::uint64_t tick,
+                                 bool may_lag, std::size_t timeline) const {
+  if (tick > ledger_->ticks(timeline)) return "shows tick " + std::to_string(tick) + ", not made";
+  const std::size_t bodies = ledger_->poses(tick, timeline).size();
+  if (shown.size() > bodies || (shown.size() < bodies && !may_lag)) {
+    return "shows " + std::to_string(shown.size()) + " bodies of " + std::to_string(bodies);
+  }
+  for (const scenes::Pose& pose : shown) {
+    if (is_shown_right(pose, tick, may_lag, timeline)) continue;
+    return "shows body " + std::to_string(pose.index) + " at tick " + std::to_string(tick) +
+           " where it was not";
+  }
+  return "";
+}
+
 void Observer::check_shown(const client::Follower& follower, bool may_lag) {
   const std::uint64_t tick = new_tick(follower);
   if (tick == 0) return;
   const std::vector<scenes::Pose> shown = follower.poses();
-  const std::size_t bodies = ledger_->poses(tick, timeline_).size();
-  if (shown.size() > bodies || (shown.size() < bodies && !may_lag)) {
-    return wrong(Invariant::kDigests,
-                 "shows " + std::to_string(shown.size()) + " bodies of " + std::to_string(bodies));
-  }
-  std::uint32_t misplaced = 0;
+  std::string mistake;
   const auto is_of = [&](std::size_t timeline) {
-    if (tick > ledger_->ticks(timeline)) return false;
-    return std::ranges::all_of(shown, [&](const scenes::Pose& pose) {
-      misplaced = pose.index;
-      return is_shown_right(pose, tick, may_lag, timeline);
-    });
+    mistake = mistake_of(shown, tick, may_lag, timeline);
+    return mistake.empty();
   };
   const bool is_it = follow_until(certain_tick_, [&] { return is_of(timeline_); });
-  if (!is_it) {
-    return wrong(Invariant::kDigests, "shows body " + std::to_string(misplaced) + " at tick " +
-                                          std::to_string(tick) + " where it was not");
-  }
+  if (!is_it) return wrong(Invariant::kDigests, mistake);
   chronicle_->count(Event::kQuantisedShown);
   verify(tick, has_next() && is_of(timeline_ + 1));
 }

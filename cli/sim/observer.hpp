@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <string>
+#include <vector>
 
 #include "cli/sim/ledger.hpp"
 #include "client/replica/follower.hpp"
@@ -63,6 +64,8 @@ class Observer {
   bool has_next() const { return timeline_ < ledger_->timeline(); }
   bool is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag,
                       std::size_t timeline) const;
+  std::string mistake_of(const std::vector<scenes::Pose>& shown, std::uint64_t tick, bool may_lag,
+                         std::size_t timeline) const;
   /// @param may_be_of_next  What was seen is in the next timeline, too: a state does not tell the
   /// inputs that led to it, so who sees states alone may have gone on without being told.
   void verify(std::uint64_t tick, bool may_be_of_next);

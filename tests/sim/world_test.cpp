@@ -58,6 +58,8 @@ constexpr std::uint64_t kFailedOnce[] = {
     1795454378360,
     // A kept state waits for the next tick at which states are sent.
     1795454371047,
+    // A late spectator is shown a quantised state of a branch that has a body less.
+    1795454372298,
 };
 
 TEST(SimWorld, HoldsItsInvariantsUnderSeedsThatOnceFailed) {
