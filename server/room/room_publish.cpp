@@ -32,7 +32,8 @@ void Room::publish() {
 
 void Room::send_snapshot(Peer& peer) {
   if (peer.delay_ticks == 0) {
-    const Shared snapshot = feed_.message(peer.profile, peer.sent, simulation_, digest_);
+    const bool speaks = peer.seat >= 0;
+    const Shared snapshot = feed_.message(peer.profile, peer.sent, speaks, simulation_, digest_);
     if (snapshot) peer.outbox.replace_snapshot(snapshot);
     return;
   }

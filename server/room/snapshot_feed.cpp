@@ -31,13 +31,13 @@ void SnapshotFeed::Channel::advance(const scenes::Simulation& simulation, std::u
   states.advance(simulation, digest);
 }
 
-Shared SnapshotFeed::message(protocol::Profile profile, protocol::SentStates& sent,
+Shared SnapshotFeed::message(protocol::Profile profile, protocol::SentStates& sent, bool speaks,
                              const scenes::Simulation& simulation, std::uint64_t digest) {
   Channel& from = channel(profile);
   from.advance(simulation, digest);
   const auto delta = from.states.delta(sent.baseline());
   // What it was sent since may show something else, unless it has said that it has all of it.
-  if (!delta->changes && sent.unanswered() == 0) return nullptr;
+  if (!delta->changes && sent.unanswered() == 0 && !speaks) return nullptr;
   sent.sent(delta->held);
   Made& made = from.made[delta.get()];
   if (!made.bytes) made = {delta, encoded(delta->message)};

@@ -24,8 +24,9 @@ class SnapshotFeed {
   explicit SnapshotFeed(const SnapshotFeedLimits& limits);
 
   /// The StateDelta for a client after the simulation's tick, noted in `sent`. Null, and nothing is
-  /// noted, where the client holds all that it would show.
-  Shared message(protocol::Profile profile, protocol::SentStates& sent,
+  /// noted, where the client holds all that it would show, unless it `speaks`: it does so for the
+  /// ticks that it hears of.
+  Shared message(protocol::Profile profile, protocol::SentStates& sent, bool speaks,
                  const scenes::Simulation& simulation, std::uint64_t digest);
   /// The client is sent the exact state by other means, and may acknowledge it.
   void hold(protocol::Profile profile, protocol::SentStates& sent,

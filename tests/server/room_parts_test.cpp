@@ -228,6 +228,33 @@ TEST_F(RoomSnapshots, AreReadByAClientOfEitherProfile) {
   EXPECT_EQ(deltas.size(), 2u);
 }
 
+// A client says its inputs for the ticks that it is shown: one who hears nothing says nothing, and
+// then nothing wakes the world up.
+TEST_F(RoomSnapshots, OfAWorldAtRestAreForWhoHasASeat) {
+  open();
+  std::map<PeerId, std::size_t> heard;
+  for (const std::int32_t seat : {0, protocol::kSpectator}) {
+    const PeerId id = room_->connect();
+    protocol::Hello greeting = hello(seat);
+    greeting.mode = protocol::Mode::kSnapshot;
+    greeting.profile = protocol::Profile::kQuantised;
+    say(id, greeting);
+    say(id, protocol::Ack{only<protocol::SnapshotPart>(hear(id)).at(0).tick});
+    heard[id] = 0;
+  }
+  for (int tick = 0; tick < 200; ++tick) {
+    run(1);
+    for (auto& [id, count] : heard) {
+      for (const auto& delta : only<protocol::StateDelta>(hear(id))) {
+        count += tick < 170 ? 0 : 1;
+        say(id, protocol::Ack{delta.tick});
+      }
+    }
+  }
+  EXPECT_EQ(heard.begin()->second, 10u) << "one every 3 ticks";
+  EXPECT_EQ(heard.rbegin()->second, 0u);
+}
+
 TEST_F(RoomSnapshots, AreMadeOnceForAll) {
   Limits limits;
   limits.keyframe_ticks = 1'000'000;

@@ -60,6 +60,8 @@ constexpr std::uint64_t kFailedOnce[] = {
     1795454371047,
     // A late spectator is shown a quantised state of a branch that has a body less.
     1795454372298,
+    // The holder of a seat heard nothing of a world at rest, and so said nothing for ever.
+    1795454378149,
 };
 
 TEST(SimWorld, HoldsItsInvariantsUnderSeedsThatOnceFailed) {
