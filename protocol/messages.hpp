@@ -188,8 +188,9 @@ using ClientMessage = std::variant<Hello, Input, Digest, Ping, Bye, Ack, TickDig
 struct Welcome {
   std::int32_t seat = kSpectator;
   std::uint32_t seats = 0;
-  std::uint64_t tick =
-      0;  ///< Of the exact state that follows, or that the client has said it holds.
+  /// Of the exact state that follows, or before it; or of the one that the client has said it
+  /// holds, which then goes on.
+  std::uint64_t tick = 0;
   std::uint32_t tick_rate_millihertz = 60000;
   std::uint32_t input_delay_ticks = 2;  ///< Lead at which a client should send its inputs.
   std::uint16_t protocol_minor = kProtocolMinor;

@@ -220,6 +220,7 @@ class Room {
   void want_state(Peer& peer);
   void overrun(PeerId id, Peer& peer);
   void begin_state(PeerId id, Peer& peer);
+  std::uint64_t welcome_tick(const Peer& peer, std::uint64_t state_tick) const;
   void say_welcome(PeerId id, Peer& peer, std::uint64_t tick);
   void tell_all(protocol::NoticeKind kind, std::uint64_t value, const std::string& text);
 

@@ -107,7 +107,7 @@ void Room::begin_state(PeerId id, Peer& peer) {
   const auto state = delayed ? late_state(peer) : states_.of(simulation_, digest_);
   if (!state) return;  // Time brings the next.
   peer.state_due = false;
-  if (peer.welcome_due) say_welcome(id, peer, state->tick());
+  if (peer.welcome_due) say_welcome(id, peer, welcome_tick(peer, state->tick()));
   if (!peer.playing()) return;
   peer.exact_tick = state->tick();
   peer.next_frame = state->tick() + 1;
@@ -116,6 +116,13 @@ void Room::begin_state(PeerId id, Peer& peer) {
   statistics_.encodes = states_.encodes() + feed_.encodes();
   if (peer.mode == protocol::Mode::kLockstep) return send_frames(id, peer, hooks_.now_ns());
   if (!delayed) feed_.hold(peer.profile, peer.sent, simulation_, digest_);
+}
+
+/// Of a state that follows. Who comes back with a state of its own takes a welcome with that one's
+/// tick for a yes; it may be of a branch that is gone, but for the ticks that all branches share.
+std::uint64_t Room::welcome_tick(const Peer& peer, std::uint64_t state_tick) const {
+  const bool may_hold = peer.resumed && peer.mode == protocol::Mode::kLockstep;
+  return may_hold && was_taken_back(state_tick) ? rewound_to_ : state_tick;
 }
 
 void Room::say_welcome(PeerId id, Peer& peer, std::uint64_t tick) {

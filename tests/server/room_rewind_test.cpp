@@ -202,6 +202,32 @@ TEST_F(RoomBranches, WhoComesBackWithATickThatWasTakenBackIsGivenTheState) {
   }
 }
 
+// Who is welcome with the tick of the state that it holds takes that state for the server's.
+TEST_F(RoomBranches, WhoseStateIsOfAnotherBranchIsNotWelcomedWithItsTick) {
+  for (const bool says_so_in_time : {true, false}) {
+    open_with_mirror();
+    const PeerId lost = player(150);
+    room_->disconnect(lost);
+    run(10);
+    ASSERT_TRUE(room_->rewind(130));
+    run(20);
+    ASSERT_NE(room_->digest(), mirror_->digests[150]);
+    const PeerId id = room_->connect();
+    protocol::Hello greeting = hello(0);
+    greeting.resume = secret_;
+    say(id, greeting);
+    if (says_so_in_time) say(id, protocol::Ack{150});
+    const auto messages = hear(id);
+    if (!says_so_in_time) say(id, protocol::Ack{150});
+    EXPECT_EQ(only<protocol::Welcome>(messages).at(0).tick, 130u);
+    EXPECT_EQ(only<protocol::SnapshotPart>(messages).at(0).tick, 150u);
+    mirror_->take(messages);
+    run(5);
+    mirror_->take(hear(id));
+    EXPECT_EQ(mirror_->simulation.digest(), room_->digest());
+  }
+}
+
 TEST_F(RoomBranches, NoSnapshotDiffersFromAStateThatWasTakenBack) {
   open();
   const PeerId id = enter(protocol::kSpectator, protocol::Mode::kSnapshot);

@@ -62,6 +62,9 @@ constexpr std::uint64_t kFailedOnce[] = {
     1795454372298,
     // The holder of a seat heard nothing of a world at rest, and so said nothing for ever.
     1795454378149,
+    // Who came back with a state that a rewind took back was given another of the same tick, and
+    // took the welcome for a yes to its own.
+    1795454372937,
 };
 
 TEST(SimWorld, HoldsItsInvariantsUnderSeedsThatOnceFailed) {
