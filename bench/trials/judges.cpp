@@ -225,7 +225,7 @@ static constexpr Judge kJudges[] = {
     {"trial-dzhanibekov", "error of momentum and energy, %", flip_error, 0.1, 2.0},
     {"trial-needle", "error of momentum and energy, %", momentum_error, 0.1, 2.0},
     {"trial-duplicate-points", "overlap, m", overlap_at_end, 0.02, 0.1},
-    {"trial-ragdoll-stress", "gap, m", gap, 0.05, 0.5},
+    {"trial-ragdoll-stress", "median gap, m", median_gap, 0.05, 0.5},
 };
 
 const Judge& judge_of(const scenes::Trial& trial) {

@@ -4,7 +4,7 @@
 
 namespace cycloid::solver {
 
-// What the two halves of the island solver share: island_solver.cpp and island_step.cpp.
+// What the parts of the island solver share: island_solver.cpp, island_step.cpp, island_joints.cpp.
 
 /// M^-1 p of one node.
 template <int D>
@@ -46,6 +46,21 @@ template <int D>
   if (group.node_b >= 0)
     for (int i = 0; i < Dim<D>::kFreedoms; ++i)
       momentum[static_cast<std::size_t>(group.node_b)][i] += impulse * row.b[i];
+}
+
+/// w x (w x r): how the speed of a point at r changes as its body turns.
+template <class L>
+Vec<2, L> centripetal(const Vec<1, L>& spin, const Vec<2, L>& r) {
+  const L square = spin[0] * spin[0];
+  return {{-square * r[0], -square * r[1]}};
+}
+template <class L>
+Vec<3, L> centripetal(const Vec<3, L>& spin, const Vec<3, L>& r) {
+  const L along = spin[0] * r[0] + spin[1] * r[1] + spin[2] * r[2];
+  const L square = spin[0] * spin[0] + spin[1] * spin[1] + spin[2] * spin[2];
+  Vec<3, L> change;
+  for (int i = 0; i < 3; ++i) change[i] = along * spin[i] - square * r[i];
+  return change;
 }
 
 /// Of the changed impulses, whose length friction bounds.

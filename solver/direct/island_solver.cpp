@@ -100,11 +100,16 @@ void IslandSolver<D>::keep_of_guess(const Island& island, Wide share) {
 }
 
 template <int D>
-void IslandSolver<D>::weaken_guess(const Island& island, std::span<const BodyMass<D>> masses) {
+Wide IslandSolver<D>::begin(const Island& island, std::span<const BodyMass<D>> masses) {
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     change[static_cast<std::size_t>(n)] = Vector::zero();
   momentum_.resize(body_of.size());
-  if (const Wide share = worth_of_guess(island, masses); share < 1.0) keep_of_guess(island, share);
+  return worth_of_guess(island, masses);
+}
+
+template <int D>
+void IslandSolver<D>::weaken_guess(const Island& island, std::span<const BodyMass<D>> masses) {
+  if (const Wide share = begin(island, masses); share < 1.0) keep_of_guess(island, share);
 }
 
 /// Which rows are equalities, by the natural map.
@@ -178,11 +183,11 @@ void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
     correction[static_cast<std::size_t>(n)] = Vector::zero();
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    if (!group.is_contact) continue;  // A joint has no overlap, and may have no row.
+    if (!group.is_contact) continue;  // Joints close by velocities, and may have no row.
     const IslandRow<D>& row = rows[static_cast<std::size_t>(group.first)];
-    if (!row.holds || row.overlap == 0.0) continue;
+    if (!row.holds || row.closing == 0.0) continue;
     island.corrects = true;
-    push<D>(group, row, -row.stiffness * row.overlap, correction);
+    push<D>(group, row, -row.stiffness * row.closing, correction);
   }
   if (!island.corrects) return;
   matrix.solve(island.steps, correction);
@@ -236,7 +241,9 @@ Wide IslandSolver<D>::most_missing(const Island& island) const {
 /// impulses would grow with every substep, so the next one starts without any.
 template <int D>
 void IslandSolver<D>::forget_conflict(const Island& island) {
-  constexpr Wide kConflict = 0.1;  // m/s or rad/s; what is solvable misses a thousandth.
+  // m/s or rad/s. What is solvable misses a thousandth; a chain that is all but straight and takes
+  // a blow a tenth, for that is what its impulses change by: with 0.1 a bridge is let go then.
+  constexpr Wide kConflict = 0.5;
   if (!(most_missing(island) > kConflict)) return;
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
@@ -247,28 +254,31 @@ void IslandSolver<D>::forget_conflict(const Island& island) {
 
 template <int D>
 Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masses,
-                              std::span<const Motion<D>> motions, float push_speed_max) {
+                              std::span<const Motion<D>> motions, const IslandStep& step) {
   solution_.resize(body_of.size());
-  weaken_guess(island, masses);
-  Wide step = 0.0;
-  for (int round = 0; round < kRounds && step < kWholeStep; ++round) {
+  const Wide share = begin(island, masses);
+  foresee_turns(island, motions, step.h);
+  if (share < 1.0) keep_of_guess(island, share);
+  Wide taken = 0.0;
+  for (int round = 0; round < kRounds && taken < kWholeStep; ++round) {
     if (round > 0 && island.products_left <= 0) break;
     choose(island);
     for (int pass = 0; pass <= kPasses; ++pass) {
       assemble(island, masses, motions);
       matrix.factor(island.steps);
       matrix.solve(island.steps, solution_);
+      if (round == 0 && pass == 0) close_joints(island);
       ++work.factors;
       island.products_left -= island.products;
       work.products += static_cast<std::uint64_t>(island.products);
       if (!let_go(island) || pass == kPasses) break;
     }
-    step = take(island, masses);
+    taken = take(island, masses);
   }
-  correct_positions(island, static_cast<Wide>(push_speed_max));
+  correct_positions(island, step.push_speed_max);
   relieve_stress(island);
   forget_conflict(island);
-  return step < kWholeStep ? Solved::kPartly : Solved::kWhole;
+  return taken < kWholeStep ? Solved::kPartly : Solved::kWhole;
 }
 
 template void IslandSolver<2>::weaken_guess(const Island&, std::span<const BodyMass<2>>);
@@ -276,8 +286,8 @@ template void IslandSolver<3>::weaken_guess(const Island&, std::span<const BodyM
 template bool IslandSolver<2>::leaves_for_sweeps(const Island&, Wide) const;
 template bool IslandSolver<3>::leaves_for_sweeps(const Island&, Wide) const;
 template Solved IslandSolver<2>::solve(Island&, std::span<const BodyMass<2>>,
-                                       std::span<const Motion<2>>, float);
+                                       std::span<const Motion<2>>, const IslandStep&);
 template Solved IslandSolver<3>::solve(Island&, std::span<const BodyMass<3>>,
-                                       std::span<const Motion<3>>, float);
+                                       std::span<const Motion<3>>, const IslandStep&);
 
 }  // namespace cycloid::solver

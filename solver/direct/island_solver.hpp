@@ -11,12 +11,12 @@ struct IslandRow {
   static constexpr int kFreedoms = Dim<D>::kFreedoms;
   Wide a[kFreedoms];  ///< Linear, then angular; 0 where the node is -1 or cannot turn.
   Wide b[kFreedoms];
-  Wide missing;    ///< Cdot plus the bias: what the row wants gone, m/s or rad/s.
-  Wide impulse;    ///< Accumulated, N s or N m s.
-  Wide change;     ///< Of the impulse, by the solve under way.
-  Wide answer;     ///< Of Cdot, by the same.
-  Wide overlap;    ///< Speed at which the position is to be corrected, m/s: below 0 apart.
-  Wide mass;       ///< Of the row alone, as the sweeps use it.
+  Wide missing;  ///< What the row wants gone of Cdot, m/s or rad/s.
+  Wide impulse;  ///< Accumulated, N s or N m s.
+  Wide change;   ///< Of the impulse, by the solve under way.
+  Wide answer;   ///< Of Cdot, by the same.
+  Wide closing;  ///< Speed at which its error of position is to go, m/s or rad/s: overlap below 0.
+  Wide mass;     ///< Of the row alone, as the sweeps use it.
   Wide stiffness;  ///< Momentum per speed that it holds with: the island's, or its inertia.
   bool holds;      ///< It is an equality of the present solve.
 };
@@ -32,7 +32,7 @@ struct IslandRows {
   int count;
   bool is_contact;
   Wide friction;
-  Vec<D, Wide> arm_a;  ///< Of a contact's point from the node; 0 where it cannot turn.
+  Vec<D, Wide> arm_a;  ///< Of a point from the node; 0 where it cannot turn, or there is no point.
   Vec<D, Wide> arm_b;
 };
 
@@ -56,6 +56,12 @@ struct IslandTension {
   int node;
   float stiffness;  ///< kg m^2, above 0.
   Vec<D> along;     ///< Unit; in the plane the only axis is across it.
+};
+
+/// What a solve has to know of the step.
+struct IslandStep {
+  Wide h;               ///< Of the substep, s.
+  Wide push_speed_max;  ///< Nothing is moved out of overlap faster, m/s.
 };
 
 /// Counts of what `IslandSolver` has done since the tick began, the same on every machine.
@@ -161,9 +167,9 @@ class IslandSolver {
   }
 
   /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and
-  /// `correction`, with which nothing moves faster than `push_speed_max`, m/s.
+  /// `correction`.
   Solved solve(Island& island, std::span<const BodyMass<D>> masses,
-               std::span<const Motion<D>> motions, float push_speed_max);
+               std::span<const Motion<D>> motions, const IslandStep& step);
   /// The first thing that `solve` does, by itself: takes back what is not worth having of the
   /// impulses that the substep begins with. Writes impulses and `change`.
   void weaken_guess(const Island& island, std::span<const BodyMass<D>> masses);
@@ -171,9 +177,12 @@ class IslandSolver {
   bool leaves_for_sweeps(const Island& island, Wide tolerance) const;
 
  private:
+  Wide begin(const Island& island, std::span<const BodyMass<D>> masses);
   void add_up_impulses(const Island& island);
   Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);
   void keep_of_guess(const Island& island, Wide share);
+  void foresee_turns(const Island& island, std::span<const Motion<D>> motions, Wide h);
+  void close_joints(const Island& island);
   void choose(const Island& island);
   bool let_go(const Island& island);
   void assemble(const Island& island, std::span<const BodyMass<D>> masses,

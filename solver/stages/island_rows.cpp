@@ -1,6 +1,7 @@
 #include "solver/stages/island_rows.hpp"
 
 #include "solver/constraints/contact_lanes.hpp"
+#include "solver/direct/island_parts.hpp"
 
 namespace cycloid::solver {
 
@@ -10,9 +11,6 @@ static constexpr float kStiffness = 1.0e3f;
 /// Tension over inertia, in one substep, that the explicit step is left: so what spins slower than
 /// a third of a radian per substep keeps its angular momentum.
 static constexpr float kExplicit = 0.1f;
-/// What all joints of an island may close together, m/s or rad/s. With 10 the ball of four tonnes
-/// still throws its chain once in half a million ticks; with 3 a stretched chain stays apart.
-static constexpr float kClosing = 5.0f;
 
 template <int D>
 static Wide speed_of(const Wide (&row)[Dim<D>::kFreedoms], const Motion<D>& motion) {
@@ -63,7 +61,7 @@ static void gather_point(const StepContext<D>& context, const StepScratch<D>& sc
       row[r].b[D + i] = static_cast<Wide>(b_turns ? turn_b[i] : 0.0f);
     }
     row[r].missing = speed_of<D>(row[r].a, motion_a) + speed_of<D>(row[r].b, motion_b);
-    row[r].overlap = 0.0;
+    row[r].closing = 0.0;
     row[r].stiffness = stiffness;
     row[r].impulse = static_cast<Wide>(r == 0 ? point.normal_impulse.raw[lane]
                                               : point.tangent_impulse[r - 1].raw[lane]);
@@ -77,14 +75,65 @@ static void gather_point(const StepContext<D>& context, const StepScratch<D>& sc
   }
   const bool both = (block.moves_a >> lane & 1) != 0 && (block.moves_b >> lane & 1) != 0;
   const float rate = both ? context.contact.bias_rate : context.contact_static.bias_rate;
-  row[0].overlap = static_cast<Wide>(
+  row[0].closing = static_cast<Wide>(
       max(rate * min(gap + context.tuning.slop, 0.0f), -context.tuning.push_speed_max));
+}
+
+/// r x (u x ...): a vector along which the moment of another is known.
+static Vec<2> cross_moment(const Vec<2>& u, const Vec<1>& m) {
+  return {{u[1] * m[0], -u[0] * m[0]}};
+}
+static Vec<3> cross_moment(const Vec<3>& u, const Vec<3>& m) {
+  return cross(u, m);
+}
+
+/// Where a joint holds its bodies, from their centres, m: told by the moments of its first rows; 0
+/// where these do not hold a point.
+template <int D>
+struct JointArms {
+  Vec<D> a = Vec<D>::zero();
+  Vec<D> b = Vec<D>::zero();
+};
+template <int D>
+static JointArms<D> arms_of(const JointRow<D>& joint) {
+  constexpr float kShare = 1.0f / static_cast<float>(D - 1);
+  JointArms<D> arms;
+  if (joint.rows.split < D) return arms;
+  for (int r = 0; r < D; ++r) {
+    const Row<D>& row = joint.rows.rows[static_cast<std::size_t>(r)];
+    if (dot(row.linear_b, row.linear_b) == 0.0f) return {};
+    arms.a += kShare * cross_moment(row.linear_a, row.angular_a);
+    arms.b += kShare * cross_moment(row.linear_b, row.angular_b);
+  }
+  return arms;
+}
+
+/// How fast the point of a joint leaves its tangent, m/s, in the middle of a substep, where a body
+/// turns that no solve changes: of the others the island solver foresees it.
+template <int D>
+static Vec<D, Wide> leaves_tangent(const StepContext<D>& context, const Motion<D>& motion, int node,
+                                   const Vec<D, Wide>& arm) {
+  if (node >= 0) return Vec<D, Wide>::zero();
+  Vec<Dim<D>::kSpin, Wide> spin;
+  for (int i = 0; i < Dim<D>::kSpin; ++i) spin[i] = static_cast<Wide>(motion.spin[i]);
+  Vec<D, Wide> speed = centripetal(spin, arm);
+  for (int i = 0; i < D; ++i) speed[i] *= 0.5 * static_cast<Wide>(context.h);
+  return speed;
 }
 
 template <int D>
 static void gather_joint(const StepContext<D>& context, const StepScratch<D>& scratch,
                          const JointRow<D>& joint, const typename IslandSolver<D>::Island& island,
-                         float bias_share, IslandRow<D>* row) {
+                         const JointArms<D>& arms, IslandRows<D>& group, IslandRow<D>* row) {
+  group.count = joint.rows.count;
+  for (int i = 0; i < D; ++i) {
+    group.arm_a[i] = static_cast<Wide>(arms.a[i]);
+    group.arm_b[i] = static_cast<Wide>(arms.b[i]);
+  }
+  const Motion<D>& motion_a = scratch.motions[joint.body_a];
+  const Motion<D>& motion_b = scratch.motions[joint.body_b];
+  const Vec<D, Wide> bend_a = leaves_tangent(context, motion_a, group.node_a, group.arm_a);
+  const Vec<D, Wide> bend_b = leaves_tangent(context, motion_b, group.node_b, group.arm_b);
   for (int r = 0; r < joint.rows.count; ++r) {
     const Row<D>& from = joint.rows.rows[static_cast<std::size_t>(r)];
     bool moves = false;
@@ -99,39 +148,26 @@ static void gather_joint(const StepContext<D>& context, const StepScratch<D>& sc
       row[r].a[D + i] = static_cast<Wide>(a_turns ? from.angular_a[i] : 0.0f);
       row[r].b[D + i] = static_cast<Wide>(b_turns ? from.angular_b[i] : 0.0f);
     }
-    row[r].missing = static_cast<Wide>(
-        row_speed(from, scratch.motions[joint.body_a], scratch.motions[joint.body_b]) +
-        bias_share * context.joint.bias_rate * from.error);
-    row[r].overlap = 0.0;
+    row[r].missing = static_cast<Wide>(row_speed(from, motion_a, motion_b));
+    for (int i = 0; i < D; ++i) row[r].missing += row[r].b[i] * (bend_b[i] - bend_a[i]);
+    row[r].closing = static_cast<Wide>(context.joint.bias_rate * from.error);
     row[r].impulse = static_cast<Wide>(joint.impulse[r]);
     row[r].mass = 1.0;
     row[r].stiffness = static_cast<Wide>(kStiffness * (moves ? island.mass : island.inertia));
   }
 }
 
-/// r x (u x ...): a vector along which the moment of another is known.
-static Vec<2> cross_moment(const Vec<2>& u, const Vec<1>& m) {
-  return {{u[1] * m[0], -u[0] * m[0]}};
-}
-static Vec<3> cross_moment(const Vec<3>& u, const Vec<3>& m) {
-  return cross(u, m);
-}
-
 /// What the force of a joint's point rows on one body does when that body turns: at an arm r it
 /// pulls back with the impulse h r . impulse per rad/s. Taken implicitly it is stable at any load.
 template <int D>
 static void add_tension(const StepContext<D>& context, const JointRow<D>& joint, bool of_b,
-                        int node, const BodyMass<D>& mass,
+                        const Vec<D>& arm, int node, const BodyMass<D>& mass,
                         std::vector<IslandTension<D>>& tensions) {
-  if (node < 0 || !can_turn<D>(mass) || joint.rows.split < D) return;
-  Vec<D> arm = Vec<D>::zero();
+  if (node < 0 || !can_turn<D>(mass) || dot(arm, arm) == 0.0f) return;
   Vec<D> force = Vec<D>::zero();
   for (int r = 0; r < D; ++r) {
     const Row<D>& row = joint.rows.rows[static_cast<std::size_t>(r)];
-    const Vec<D>& u = of_b ? row.linear_b : row.linear_a;
-    if (dot(u, u) == 0.0f) return;
-    arm += 1.0f / static_cast<float>(D - 1) * cross_moment(u, of_b ? row.angular_b : row.angular_a);
-    force += joint.impulse[r] * u;
+    force += joint.impulse[r] * (of_b ? row.linear_b : row.linear_a);
   }
   const Vec<D> along = normalized_or(arm, Vec<D>::zero());
   const float* inverse = mass.inverse_inertia.m;
@@ -143,34 +179,12 @@ static void add_tension(const StepContext<D>& context, const JointRow<D>& joint,
   if (stiffness > 0.0f) tensions.push_back({node, stiffness, along});
 }
 
-/// The share of their bias that the joints of an island have, at most 1: they close together at no
-/// more than the bound. Their errors add up along a chain, and what is heavy at its end would be
-/// thrown by the sum, with all that is light between.
-template <int D>
-static float share_of_bias(const StepContext<D>& context, const StepScratch<D>& scratch,
-                           const typename IslandSolver<D>::Island& island) {
-  float closing = 0.0f;
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const auto place =
-        static_cast<std::size_t>(scratch.islands_solved.sources[static_cast<std::size_t>(g)].place);
-    const JointRow<D>& joint = scratch.joint_rows[place];
-    float square = 0.0f;
-    for (int r = 0; r < joint.rows.count; ++r) {
-      const float error = joint.rows.rows[static_cast<std::size_t>(r)].error;
-      square += error * error;
-    }
-    closing += context.joint.bias_rate * sqrt(square);
-  }
-  return closing > kClosing ? kClosing / closing : 1.0f;
-}
-
 template <int D, int W>
 void gather_island(const StepContext<D>& context, StepScratch<D>& scratch,
                    typename IslandSolver<D>::Island& island) {
   IslandSolver<D>& solver = scratch.islands_solved;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   const auto stiffness = static_cast<Wide>(kStiffness * island.mass);
-  const float share = share_of_bias(context, scratch, island);
   island.tensions = {static_cast<int>(solver.tensions.size()),
                      static_cast<int>(solver.tensions.size())};
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
@@ -183,10 +197,12 @@ void gather_island(const StepContext<D>& context, StepScratch<D>& scratch,
       continue;
     }
     const JointRow<D>& joint = scratch.joint_rows[place];
-    group.count = joint.rows.count;
-    gather_joint(context, scratch, joint, island, share, row);
-    add_tension(context, joint, false, group.node_a, scratch.masses[joint.body_a], solver.tensions);
-    add_tension(context, joint, true, group.node_b, scratch.masses[joint.body_b], solver.tensions);
+    const JointArms<D> arms = arms_of(joint);
+    gather_joint(context, scratch, joint, island, arms, group, row);
+    add_tension(context, joint, false, arms.a, group.node_a, scratch.masses[joint.body_a],
+                solver.tensions);
+    add_tension(context, joint, true, arms.b, group.node_b, scratch.masses[joint.body_b],
+                solver.tensions);
   }
   island.tensions.end = static_cast<int>(solver.tensions.size());
 }

@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <vector>
 
 namespace cycloid::solver {
@@ -37,7 +38,7 @@ struct BodyOnGround {
     row.stiffness = 1000.0f;
     solver.rows.push_back(row);
   }
-  Solved solve() { return solver.solve(island, masses, motions, 3.0f); }
+  Solved solve() { return solver.solve(island, masses, motions, {1.0 / 240.0, 3.0}); }
 };
 
 TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
@@ -105,7 +106,7 @@ TEST(IslandSolver, PushesWhatIsWedgedNoFasterThanItsBound) {
     body.solver.rows[normal].b[0] = 0.01;
     body.solver.rows[normal].b[1] = normal == 0 ? 1.0 : -1.0;
     body.solver.rows[normal].impulse = 1.0;
-    body.solver.rows[normal].overlap = -1.0;
+    body.solver.rows[normal].closing = -1.0;
   }
   EXPECT_EQ(body.solve(), Solved::kWhole);
   EXPECT_TRUE(body.island.corrects);
@@ -151,6 +152,44 @@ TEST(IslandSolver, WeakensAGuessWithoutSolving) {
   body.solver.weaken_guess(body.island, body.masses);
   EXPECT_NEAR(body.solver.change[0][0], -10.0, 1.0e-2) << "it has not moved";
   for (const IslandRow<2>& row : body.solver.rows) EXPECT_NEAR(row.impulse, 0.0, 1.0);
+}
+
+/// A body of 1 kg whose only point is held by a joint to the world, half a metre from its centre.
+struct BodyOnJoint : BodyOnGround {
+  BodyOnJoint() {
+    solver.groups.clear();
+    solver.rows.clear();
+    solver.groups.push_back({-1, 0, -1, 0, 2, false, 0.0, {}, {{0.5, 0.0}}});
+    add_row(1.0f, 0.0f);
+    add_row(0.0f, 1.0f);
+    island.groups = island.joints = {0, 1};
+    island.joint_count = 1;
+  }
+};
+
+TEST(IslandSolver, ForeseesThatABodyTurnsAsItMoves) {
+  BodyOnJoint body;
+  body.motions[0].spin[0] = 6.0f;
+  ASSERT_EQ(body.solve(), Solved::kWhole);
+  // The point goes round the centre, so the centre has to come after it by h w^2 r / 2.
+  EXPECT_NEAR(body.solver.change[0][0], 36.0 * 0.5 / 480.0, 1.0e-4);
+  EXPECT_NEAR(body.solver.change[0][1], 0.0, 1.0e-9);
+}
+
+TEST(IslandSolver, ForeseesOfAWildSpinNoMoreThanATenthOfARadian) {
+  BodyOnJoint body;
+  body.motions[0].spin[0] = 1000.0f;
+  ASSERT_EQ(body.solve(), Solved::kWhole);
+  EXPECT_NEAR(body.solver.change[0][0], 24.0 * 24.0 * 0.5 / 480.0, 2.0e-3);
+}
+
+TEST(IslandSolver, ClosesAJointNoFasterThanABodyMayBeMoved) {
+  for (const double apart : {0.2, 3.0, 50.0}) {
+    BodyOnJoint body;
+    body.solver.rows[1].closing = apart;
+    ASSERT_EQ(body.solve(), Solved::kWhole);
+    EXPECT_NEAR(body.solver.change[0][1], -std::min(apart, std::max(0.5, 0.12 * apart)), 1.0e-2);
+  }
 }
 
 }  // namespace cycloid::solver

@@ -1,0 +1,105 @@
+#include <algorithm>
+
+#include "solver/direct/island_parts.hpp"
+
+namespace cycloid::solver {
+
+/// The most that a body is taken to turn in a substep, rad: beyond it the second order tells
+/// little, and what a jam spins for a moment would throw all that it is jointed to.
+static constexpr Wide kTurn_rad = 0.1;
+/// As fast as joints that are apart may move any body by closing, m/s, ...
+static constexpr Wide kMoved = 0.5;
+/// ... or this share of the speed at which the worst of them would close by itself.
+static constexpr Wide kMovedShare = 0.12;
+
+/// Joints that would close more slowly, m/s or rad/s, are let be until they have more to close: of
+/// 60 Hz it is the hundredth part of a millimetre, for which a solve is a tenth of a substep.
+static constexpr Wide kLetBe = 1.0e-3;
+
+/// The spin of a node before the first guess, at most kTurn_rad in a substep.
+template <int D>
+static Vec<Dim<D>::kSpin, Wide> spin_before(const Motion<D>& motion,
+                                            const Vec<Dim<D>::kFreedoms, Wide>& guess, Wide h) {
+  Vec<Dim<D>::kSpin, Wide> spin;
+  Wide square = 0.0;
+  for (int i = 0; i < Dim<D>::kSpin; ++i) {
+    spin[i] = static_cast<Wide>(motion.spin[i]) - guess[D + i];
+    square += spin[i] * spin[i];
+  }
+  const Wide most = kTurn_rad / h;
+  if (!(square > most * most)) return spin;
+  const Wide scale = most / root(square);
+  for (int i = 0; i < Dim<D>::kSpin; ++i) spin[i] *= scale;
+  return spin;
+}
+
+/// Adds to what the points of joints miss by how fast they part because their bodies turn: a step
+/// moves them along tangents, so that a chain that swings would part by h^2 w^2 r / 2 in each one,
+///   C(t + h) - C(t) = h Cdot + h^2/2 (w_b x (w_b x r_b) - w_a x (w_a x r_a)) + O(h^3).
+/// A bias takes that back only once it is there, and along rows that have turned since.
+/// Source: the end of the step is what is constrained, with directions of its begin, as in SHAKE
+/// (Ryckaert, Ciccotti, Berendsen 1977); of its iteration this is the first guess.
+/// @pre `momentum_` has the velocities that the first guess is of: its spins are of no motion.
+template <int D>
+void IslandSolver<D>::foresee_turns(const Island& island, std::span<const Motion<D>> motions,
+                                    Wide h) {
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    Vec<D, Wide> parting = Vec<D, Wide>::zero();
+    const auto add = [&](int node, const Vec<D, Wide>& arm, Wide scale) {
+      if (node < 0) return;
+      const auto at = static_cast<std::size_t>(node);
+      const auto spin = spin_before<D>(motions[body_of[at]], momentum_[at], h);
+      const Vec<D, Wide> towards = centripetal(spin, arm);
+      for (int i = 0; i < D; ++i) parting[i] += scale * towards[i];
+    };
+    add(group.node_a, group.arm_a, -0.5 * h);
+    add(group.node_b, group.arm_b, 0.5 * h);
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      for (int i = 0; i < D; ++i) row.missing += row.b[i] * parting[i];
+    }
+  }
+}
+
+/// Adds to the solution what closes the joints, as far as it moves no body fast: the links of a
+/// chain that is all but straight have to go a long way aside for a little of its length, and what
+/// they are thrown with stays in the world as energy.
+/// @pre `solution_` is of the matrix as it is factored.
+template <int D>
+void IslandSolver<D>::close_joints(const Island& island) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    correction[static_cast<std::size_t>(n)] = Vector::zero();
+  Wide fastest = 0.0;
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    Wide square = 0.0;
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      square += row.closing * row.closing;
+      push<D>(group, row, -row.stiffness * row.closing, correction);
+    }
+    fastest = std::max(fastest, root(square));
+  }
+  if (fastest < kLetBe) return;
+  matrix.solve(island.steps, correction);
+  const Wide share = share_of_correction(island, std::max(kMoved, kMovedShare * fastest));
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    const auto node = static_cast<std::size_t>(n);
+    for (int i = 0; i < kFreedoms; ++i) solution_[node][i] += share * correction[node][i];
+  }
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      row.missing += share * row.closing;
+    }
+  }
+}
+
+template void IslandSolver<2>::foresee_turns(const Island&, std::span<const Motion<2>>, Wide);
+template void IslandSolver<3>::foresee_turns(const Island&, std::span<const Motion<3>>, Wide);
+template void IslandSolver<2>::close_joints(const Island&);
+template void IslandSolver<3>::close_joints(const Island&);
+
+}  // namespace cycloid::solver
