@@ -40,6 +40,13 @@ Json to_json(ScenarioResult& result) {
                       {"input_to_state_p999_ms", tally.input_to_state_ms.quantile(999)},
                       {"join_p99_ms", tally.join_ms.quantile(990)}});
   }
+  Json overruns = Json::array();
+  for (const Stretch& stretch : result.overruns) {
+    overruns.push_back({{"from_s", stretch.from_s},
+                        {"to_s", stretch.to_s},
+                        {"behind", stretch.behind},
+                        {"control_worst_ms", stretch.control_worst_ms}});
+  }
   return {{"scenario", result.name},
           {"seconds", result.seconds},
           {"cpu_percent", result.cpu_percent},
@@ -55,6 +62,8 @@ Json to_json(ScenarioResult& result) {
            {result.control_p50_ms, result.control_p99_ms, result.control_p999_ms,
             result.control_max_ms}},
           {"control_behind", result.control_behind},
+          {"own_overruns", result.own_overruns()},
+          {"overruns", std::move(overruns)},
           {"groups", std::move(groups)}};
 }
 
@@ -73,6 +82,11 @@ void print(const Json& result) {
       "behind %.0f\n",
       number(late[0]), number(late[1]), number(late[2]), number(control[0]), number(control[1]),
       number(control[2]), number(control[3]), number(result["control_behind"]));
+  for (const Json& stretch : result["overruns"]) {
+    std::printf("  second %.0f to %.0f: %.0f behind; the bare timer was %.2f ms late at most\n",
+                number(stretch["from_s"]), number(stretch["to_s"]), number(stretch["behind"]),
+                number(stretch["control_worst_ms"]));
+  }
   for (const Json& group : result["groups"]) {
     std::printf(
         "  %-10s %5.0f of %5.0f joined, %4.0f closed; %.0f B an update, gap p99 %.1f ms; "

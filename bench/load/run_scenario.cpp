@@ -1,12 +1,11 @@
 #include <sys/resource.h>
 
-#include <atomic>
 #include <filesystem>
 #include <fstream>
 #include <future>
 #include <stdexcept>
-#include <thread>
 
+#include "bench/load/lateness.hpp"
 #include "bench/load/metrics_page.hpp"
 #include "bench/load/places.hpp"
 #include "bench/load/scenario.hpp"
@@ -18,7 +17,6 @@ namespace {
 
 constexpr double kWarmUpS = 5.0;
 constexpr double kCatchUpS = 0.5;
-constexpr std::chrono::nanoseconds kTick{16'666'667};
 
 /// A closed room with a ball for every seat.
 scenes::Scene seats_scene(int seats) {
@@ -64,38 +62,6 @@ void write_config(const std::filesystem::path& file, const Scenario& scenario,
     to << "[[room]]\nname = \"room-" << i << "\"\ntemplate = \"load\"\n";
   }
 }
-
-/// Lateness of a bare timer, so that the machine's own is known beside the server's.
-class BareTimer {
- public:
-  BareTimer() : thread_([this] { run(); }) {}
-  ~BareTimer() {
-    stop_ = true;
-    if (thread_.joinable()) thread_.join();
-  }
-  /// Until then nothing is kept.
-  void begin_measuring() { measures_ = true; }
-  Samples stop() {
-    stop_ = true;
-    thread_.join();
-    return std::move(late_ms_);
-  }
-
- private:
-  void run() {
-    auto due = Clock::now();
-    while (!stop_) {
-      due += kTick;
-      std::this_thread::sleep_until(due);
-      const double late_ms = std::chrono::duration<double, std::milli>(Clock::now() - due).count();
-      if (measures_) late_ms_.add(late_ms);
-    }
-  }
-  std::atomic<bool> stop_{false};
-  std::atomic<bool> measures_{false};
-  Samples late_ms_;
-  std::thread thread_;
-};
 
 /// Clients are elsewhere in earnest: where they share the server's cores, they are to take what it
 /// leaves. Of this thread alone, which cannot take it back without being root; what it starts later
@@ -163,37 +129,11 @@ class Crowd {
 
 }  // namespace
 
-static ScenarioResult measure(const Scenario& scenario, const std::string& program, double seconds,
-                              bool realtime) {
-  const OwnFolder folder;
-  const scenes::Scene scene = scene_of(scenario.scene);
-  const std::filesystem::path scene_file = folder / "scene.json";
-  std::ofstream(scene_file) << scenes::to_json(scene);
-  const std::uint16_t operation_port = free_port();
-  write_config(folder / "load.toml", scenario, scene_file.string(), operation_port);
-
-  std::vector<std::string> words = {"serve", "--config", (folder / "load.toml").string()};
-  if (realtime) words.push_back("--rt");
-  ServerProcess server(program, words);
-  BareTimer control;  // Before the clients give way, or it would, too.
-  give_way_to_the_server();
-  Crowd crowd(scenario, server.port(), scenes::scene_digest(scene));
-  crowd.run_for(kWarmUpS);
-
-  // The page blocks this thread, and so every client: what has come meanwhile is no measurement.
-  const MetricsPage before = MetricsPage::fetch(operation_port);
-  crowd.catch_up();
-  crowd.begin_measuring();
-  const Usage used_before = server.usage();
-  const auto began = Clock::now();
-  control.begin_measuring();
-  crowd.run_for(seconds);
-  Samples control_ms = control.stop();
-  const MetricsPage after = MetricsPage::fetch(operation_port);
-  const Usage used = server.usage();
-
+/// What the server did between two pages of its metrics, since `began`.
+static ScenarioResult server_figures(const MetricsPage& before, const MetricsPage& after,
+                                     const Usage& used_before, const Usage& used,
+                                     Clock::time_point began) {
   ScenarioResult result;
-  result.name = scenario.name;
   result.seconds = std::chrono::duration<double>(Clock::now() - began).count();
   result.cpu_percent = 100.0 * (used.cpu_s - used_before.cpu_s) / result.seconds;
   result.resident_mb = static_cast<double>(used.resident_bytes) / 1e6;
@@ -211,12 +151,49 @@ static ScenarioResult measure(const Scenario& scenario, const std::string& progr
   result.late_p50_ms = after.quantile_ms(lateness, 0.5, before);
   result.late_p99_ms = after.quantile_ms(lateness, 0.99, before);
   result.late_p999_ms = after.quantile_ms(lateness, 0.999, before);
+  return result;
+}
+
+static ScenarioResult measure(const Scenario& scenario, const std::string& program, double seconds,
+                              bool realtime) {
+  const OwnFolder folder;
+  const scenes::Scene scene = scene_of(scenario.scene);
+  const std::filesystem::path scene_file = folder / "scene.json";
+  std::ofstream(scene_file) << scenes::to_json(scene);
+  const std::uint16_t operation_port = free_port();
+  write_config(folder / "load.toml", scenario, scene_file.string(), operation_port);
+
+  std::vector<std::string> words = {"serve", "--config", (folder / "load.toml").string()};
+  if (realtime) words.push_back("--rt");
+  ServerProcess server(program, words);
+  BareTimer control;  // Before the clients give way, or it would, too; so the watch.
+  OverrunWatch watch(operation_port, control);
+  give_way_to_the_server();
+  Crowd crowd(scenario, server.port(), scenes::scene_digest(scene));
+  crowd.run_for(kWarmUpS);
+
+  // The page blocks this thread, and so every client: what has come meanwhile is no measurement.
+  const MetricsPage before = MetricsPage::fetch(operation_port);
+  crowd.catch_up();
+  crowd.begin_measuring();
+  const Usage used_before = server.usage();
+  const auto began = Clock::now();
+  control.begin_measuring();
+  watch.begin();
+  crowd.run_for(seconds);
+  std::vector<Stretch> overruns = watch.stop();
+  Samples control_ms = control.stop();
+  const MetricsPage after = MetricsPage::fetch(operation_port);
+  const Usage used = server.usage();
+
+  ScenarioResult result = server_figures(before, after, used_before, used, began);
+  result.name = scenario.name;
   result.control_p50_ms = control_ms.quantile(500);
   result.control_p99_ms = control_ms.quantile(990);
   result.control_p999_ms = control_ms.quantile(999);
   result.control_max_ms = control_ms.quantile(1000);
-  result.control_behind =
-      static_cast<int>(control_ms.above(std::chrono::duration<double, std::milli>(kTick).count()));
+  result.control_behind = static_cast<int>(control_ms.above(kTick_ms));
+  result.overruns = std::move(overruns);
   result.groups = crowd.stop();
   (void)server.stop();
   return result;

@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "bench/load/lateness.hpp"
 #include "bench/load/load_client.hpp"
 
 namespace cycloid::load {
@@ -58,11 +59,15 @@ struct ScenarioResult {
   double control_p999_ms = 0.0;
   double control_max_ms = 0.0;
   int control_behind = 0;  ///< Of its ticks: began in the time of the next, as an overrun does.
+  std::vector<Stretch> overruns;
   std::vector<GroupResult> groups;
+
+  /// Overruns of seconds in which the bare timer was in time: those are the server's.
+  double own_overruns() const;
 };
 
 /// What the server has not held up, in sentences: clients that were refused, lost or never let in,
-/// and ticks that began in the time of others.
+/// and ticks that began in the time of others while the machine did not stand still.
 std::vector<std::string> failures_of(const ScenarioResult& result);
 
 /// Starts the server, connects the clients, waits for the warm-up, measures, ends the server.
