@@ -81,16 +81,6 @@ void Ledger::branch(std::uint64_t tick, std::span<const std::byte> state) {
                       "the state of tick " + std::to_string(tick) + " to go on from is another");
 }
 
-bool Ledger::next_is_same(std::size_t timeline, std::uint64_t tick) const {
-  for (std::uint64_t t = timelines_[timeline + 1].branch_tick + 1; t <= tick; ++t) {
-    const protocol::LogTick* here = at(t, timeline);
-    const protocol::LogTick* next = at(t, timeline + 1);
-    if (here == nullptr || next == nullptr) return false;
-    if (here->digest != next->digest || !(here->frame == next->frame)) return false;
-  }
-  return true;
-}
-
 std::uint64_t Ledger::highest_tick() const {
   std::uint64_t highest = 0;
   for (const Timeline& timeline : timelines_) {

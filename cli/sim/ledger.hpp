@@ -37,8 +37,8 @@ class Ledger {
   void branch(std::uint64_t tick, std::span<const std::byte> state);
   std::size_t timeline() const { return timelines_.size() - 1; }  ///< The one that goes on.
 
-  /// Whether the next timeline has the same ticks up to this one. @pre there is a next one
-  bool next_is_same(std::size_t timeline, std::uint64_t tick) const;
+  /// The last tick that a timeline has from the one before it.
+  std::uint64_t branch_tick(std::size_t timeline) const { return timelines_[timeline].branch_tick; }
   /// The highest that was ever made, in whichever timeline.
   std::uint64_t highest_tick() const;
 

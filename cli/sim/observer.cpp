@@ -46,21 +46,31 @@ void Observer::heard(const protocol::ServerMessage& message) {
     if (part->offset == 0) on_exact_state(part->tick);
   }
   if (const auto* digest = std::get_if<protocol::Digest>(&message)) {
-    const protocol::LogTick* confirmed = ledger_->at(digest->tick, timeline_);
-    const bool first = digest->tick == 0;
-    if (!first && (confirmed == nullptr || confirmed->digest != digest->digest)) {
+    const bool is_it = narrow([&](std::size_t timeline) {
+      const protocol::LogTick* confirmed = ledger_->at(digest->tick, timeline);
+      return confirmed != nullptr && confirmed->digest == digest->digest;
+    });
+    if (digest->tick != 0 && !is_it) {
       wrong(Invariant::kDigests,
             "heard a digest of tick " + std::to_string(digest->tick) + " that is not the server's");
     }
   }
   const auto* notice = std::get_if<protocol::RoomNotice>(&message);
-  if (notice == nullptr || notice->kind != protocol::NoticeKind::kRewound) return;
-  if (timeline_ == ledger_->timeline()) {
-    return wrong(Invariant::kFrames, "heard of a rewind that was none");
+  if (notice != nullptr && notice->kind == protocol::NoticeKind::kRewound) {
+    on_rewound(notice->value);
   }
-  ++timeline_;
-  last_frame_ = exact_tick_ = notice->value;
-  verified_tick_ = certain_tick_ = 0;
+}
+
+void Observer::on_rewound(std::uint64_t tick) {
+  widen();
+  std::set<std::size_t> next;
+  for (const std::size_t timeline : timelines_) {
+    if (timeline < ledger_->timeline()) next.insert(timeline + 1);
+  }
+  if (next.empty()) return wrong(Invariant::kFrames, "heard of a rewind that was none");
+  timelines_ = std::move(next);
+  last_frame_ = exact_tick_ = seen_tick_ = tick;
+  verified_tick_ = 0;
 }
 
 /// What it hears was sent a while ago, so this is never too strict.
@@ -78,48 +88,47 @@ void Observer::check_delay(const protocol::ServerMessage& message) {
                                std::to_string(delay_ticks_) + " ticks late");
 }
 
-/// Who sees the match late and has seen nothing of what was taken back is not told that it was.
-bool Observer::follows_branch(std::uint64_t seen_tick) {
-  if (delay_ticks_ == 0 || timeline_ == ledger_->timeline()) return false;
-  if (!ledger_->next_is_same(timeline_, seen_tick)) return false;
-  ++timeline_;
-  return true;
+/// Who sees the match late and has seen nothing of what was taken back is not told that it was. It
+/// may also still hear what was on the way before that, so it may be in either timeline.
+void Observer::widen() {
+  if (delay_ticks_ == 0) return;
+  for (const std::size_t timeline : timelines_) {  // Those that are added, too: they come behind.
+    const std::size_t next = timeline + 1;
+    if (next > ledger_->timeline() || seen_tick_ > ledger_->branch_tick(next)) continue;
+    timelines_.insert(next);
+  }
 }
 
 void Observer::welcomed(std::uint64_t tick, std::size_t timeline, std::uint64_t delay_ticks) {
   welcomed_ = true;
   delay_ticks_ = delay_ticks;
-  timeline_ = timeline;
-  last_frame_ = exact_tick_ = tick;
+  timelines_ = {timeline};
+  last_frame_ = exact_tick_ = seen_tick_ = tick;
 }
 
 void Observer::on_exact_state(std::uint64_t tick) {
-  const auto is_there = [&] { return tick <= ledger_->ticks(timeline_); };
-  if (!follow_until(std::max(certain_tick_, last_frame_), is_there)) {
+  if (!narrow([&](std::size_t timeline) { return tick <= ledger_->ticks(timeline); })) {
     wrong(Invariant::kFrames,
           "heard a state of tick " + std::to_string(tick) + ", which is not confirmed");
   }
   exact_tick_ = tick;
+  seen_tick_ = std::max(seen_tick_, tick);
 }
 
 void Observer::on_frame(const protocol::InputFrame& frame) {
   const std::string name = "the frame of tick " + std::to_string(frame.tick);
-  const protocol::LogTick* confirmed = ledger_->at(frame.tick, timeline_);
-  const bool is_it = follow_until(last_frame_, [&] {
-    confirmed = ledger_->at(frame.tick, timeline_);
+  const bool is_it = narrow([&](std::size_t timeline) {
+    const protocol::LogTick* confirmed = ledger_->at(frame.tick, timeline);
     return confirmed != nullptr && confirmed->frame == frame;
   });
-  if (confirmed == nullptr) return wrong(Invariant::kFrames, name + " is not confirmed");
-  if (!is_it) {
-    return wrong(Invariant::kFrames, name + " is not the one that was confirmed");
-  }
+  if (!is_it) return wrong(Invariant::kFrames, name + " is not one that was confirmed");
   const bool next = frame.tick == last_frame_ + 1;
   const bool behind_state = frame.tick == exact_tick_ + 1 && frame.tick > last_frame_;
   if (!welcomed_ || (!next && !behind_state)) {
     return wrong(Invariant::kFrames,
                  name + " came behind that of tick " + std::to_string(last_frame_));
   }
-  last_frame_ = frame.tick;
+  last_frame_ = seen_tick_ = frame.tick;
 }
 
 std::uint64_t Observer::new_tick(const client::Follower& follower) {
@@ -127,8 +136,9 @@ std::uint64_t Observer::new_tick(const client::Follower& follower) {
   if (excused_ || progress.phase != client::Phase::kRunning) return 0;
   const std::uint64_t tick = progress.last_tick;
   if (tick == verified_tick_ || tick == 0) return 0;
-  const auto is_there = [&] { return ledger_->at(tick, timeline_) != nullptr; };
-  if (follow_until(certain_tick_, is_there)) return tick;
+  if (narrow([&](std::size_t timeline) { return ledger_->at(tick, timeline) != nullptr; })) {
+    return tick;
+  }
   wrong(Invariant::kDigests, "is at tick " + std::to_string(tick) + ", which is not confirmed");
   return 0;
 }
@@ -137,23 +147,22 @@ void Observer::check_state(const client::Follower& follower) {
   const std::uint64_t tick = new_tick(follower);
   if (tick == 0 || follower.simulation().tick() != tick) return;
   const std::uint64_t digest = follower.simulation().digest();
-  const auto is_of = [&](std::size_t timeline) {
+  const bool is_it = narrow([&](std::size_t timeline) {
     const protocol::LogTick* confirmed = ledger_->at(tick, timeline);
     return confirmed != nullptr && digest == confirmed->digest;
-  };
-  const bool is_it = follow_until(certain_tick_, [&] { return is_of(timeline_); });
+  });
   if (!is_it) {
     if (disturbed_) return;
     return wrong(Invariant::kDigests,
                  "its state of tick " + std::to_string(tick) + " is not the server's");
   }
   disturbed_ = false;  // What one bit did may also die out.
-  verify(tick, has_next() && is_of(timeline_ + 1));
+  verify(tick);
 }
 
-void Observer::verify(std::uint64_t tick, bool may_be_of_next) {
+void Observer::verify(std::uint64_t tick) {
   verified_tick_ = tick;
-  if (!may_be_of_next) certain_tick_ = tick;
+  seen_tick_ = std::max(seen_tick_, tick);
   if (delay_ticks_ > 0) chronicle_->count(Event::kSeenLate);
 }
 
@@ -189,10 +198,9 @@ void Observer::check_shown(const client::Follower& follower, bool may_lag) {
     mistake = mistake_of(shown, tick, may_lag, timeline);
     return mistake.empty();
   };
-  const bool is_it = follow_until(certain_tick_, [&] { return is_of(timeline_); });
-  if (!is_it) return wrong(Invariant::kDigests, mistake);
+  if (!narrow(is_of)) return wrong(Invariant::kDigests, mistake);
   chronicle_->count(Event::kQuantisedShown);
-  verify(tick, has_next() && is_of(timeline_ + 1));
+  verify(tick);
 }
 
 }  // namespace cycloid::sim

@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <set>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "cli/sim/ledger.hpp"
@@ -48,27 +50,26 @@ class Observer {
   void on_frame(const protocol::InputFrame& frame);
   void on_exact_state(std::uint64_t tick);
   void check_delay(const protocol::ServerMessage& message);
-  bool follows_branch(std::uint64_t seen_tick);
-  /// Goes on to later timelines, where it may, until `matches()`; stays where none does.
-  /// @returns whether one does.
+  /// Of the timelines that the client may be in, those stay of which `matches`; where none does,
+  /// all stay. @returns whether one does.
   template <class Matches>
-  bool follow_until(std::uint64_t seen_tick, Matches&& matches) {
-    const std::size_t from = timeline_;
-    while (!matches()) {
-      if (follows_branch(seen_tick)) continue;
-      timeline_ = from;
-      return false;
+  bool narrow(Matches&& matches) {
+    widen();
+    std::set<std::size_t> left;
+    for (const std::size_t timeline : timelines_) {
+      if (matches(timeline)) left.insert(timeline);
     }
+    if (left.empty()) return false;
+    timelines_ = std::move(left);
     return true;
   }
-  bool has_next() const { return timeline_ < ledger_->timeline(); }
+  void widen();
+  void on_rewound(std::uint64_t tick);
   bool is_shown_right(const scenes::Pose& pose, std::uint64_t tick, bool may_lag,
                       std::size_t timeline) const;
   std::string mistake_of(const std::vector<scenes::Pose>& shown, std::uint64_t tick, bool may_lag,
                          std::size_t timeline) const;
-  /// @param may_be_of_next  What was seen is in the next timeline, too: a state does not tell the
-  /// inputs that led to it, so who sees states alone may have gone on without being told.
-  void verify(std::uint64_t tick, bool may_be_of_next);
+  void verify(std::uint64_t tick);
   void wrong(Invariant invariant, const std::string& text) {
     chronicle_->violate(invariant, name_ + ": " + text);
   }
@@ -76,11 +77,12 @@ class Observer {
   const Ledger* ledger_;
   std::string name_;
   Chronicle* chronicle_;
-  std::size_t timeline_ = 0;  ///< Of the ledger, as far as was heard.
+  /// Of the ledger: those that what was heard may be of. Without a delay it is one.
+  std::set<std::size_t> timelines_ = {0};
+  std::uint64_t seen_tick_ = 0;  ///< The last tick that it was shown, or told to go on from.
   std::uint64_t last_frame_ = 0;
   std::uint64_t exact_tick_ = 0;  ///< Of the last exact state announced: frames may go on there.
   std::uint64_t verified_tick_ = 0;
-  std::uint64_t certain_tick_ = 0;  ///< The last verified one that can be of `timeline_` alone.
   std::uint64_t delay_ticks_ = 0;
   bool welcomed_ = false;
   bool excused_ = false;

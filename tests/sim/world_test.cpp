@@ -65,6 +65,10 @@ constexpr std::uint64_t kFailedOnce[] = {
     // Who came back with a state that a rewind took back was given another of the same tick, and
     // took the welcome for a yes to its own.
     1795454372937,
+    // A late spectator is told of the third of three rewinds, or is given a state that two
+    // timelines have: the check took it for in the first timeline that it could be.
+    1795454407017,
+    1795454421956,
 };
 
 TEST(SimWorld, HoldsItsInvariantsUnderSeedsThatOnceFailed) {
