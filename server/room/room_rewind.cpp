@@ -106,9 +106,8 @@ void Room::rewind_peers(std::uint64_t tick) {
   for (auto& [id, peer] : peers_) {
     if (!peer.playing() || peer.welcome_due) continue;
     // A spectator that lags behind has seen nothing of what was taken back: it goes on. One whose
-    // state is due, as after a desync, has seen the frames before that.
-    const bool lockstep = peer.mode == protocol::Mode::kLockstep;
-    const std::uint64_t seen = lockstep ? peer.next_frame - 1 : peer.exact_tick;
+    // state is due has seen the frames before a desync, or been told to go on from another tick.
+    const std::uint64_t seen = std::max(peer.next_frame - 1, peer.exact_tick);
     if (peer.delay_ticks > 0 && seen <= tick) continue;
     want_state(peer);
     peer.exact_tick = 0;

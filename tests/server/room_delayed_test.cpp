@@ -154,6 +154,26 @@ TEST_F(RoomDelayed, ARewindIsToldToWhoseStateIsDueForTheFramesThatItHasSeen) {
   EXPECT_EQ(notices[0].kind, protocol::NoticeKind::kRewound);
 }
 
+TEST_F(RoomDelayed, ARewindIsToldToWhoWasToldToGoOnFromALaterTick) {
+  for (const auto mode : {protocol::Mode::kLockstep, protocol::Mode::kSnapshot}) {
+    RoomOptions options;
+    options.spectator_delay_ticks = 20;
+    options.limits.keyframe_ticks = 7;
+    open_with(options);
+    const PeerId id = enter(protocol::kSpectator, mode);
+    run(75);
+    (void)hear(id);
+    ASSERT_TRUE(room_->rewind(45));
+    ASSERT_TRUE(room_->rewind(19));
+    const auto messages = hear(id);
+    const auto notices = only<protocol::RoomNotice>(messages);
+    ASSERT_EQ(notices.size(), 2u);
+    EXPECT_EQ(notices[0].value, 21u) << "of which it has no state yet";
+    EXPECT_EQ(notices[1].value, 0u);
+    EXPECT_EQ(only<protocol::SnapshotPart>(messages).at(0).tick, 0u);
+  }
+}
+
 TEST_F(RoomDelayed, WhoWaitsForAKeptStateIsNotSlow) {
   RoomOptions options;
   options.spectator_delay_ticks = 20;
