@@ -67,7 +67,7 @@ void SimClient::dial() {
   outbox_.clear();
   farewell_until_ns_ = kNever;
   heard_local_ns_ = pinged_local_ns_ = local_ns();
-  mismatches_ = 0;
+  mismatches_ = contradicted_tick_ = 0;
   draw_mischief();
   make_follower();
   follower_->greet(outbox_);
@@ -228,6 +228,8 @@ void SimClient::check_after(std::uint64_t snapshots_before) {
   if (progress.mismatches != mismatches_ && !observer_->disturbed()) {
     blame("is told another digest than its own");
   }
+  if (progress.snapshots != snapshots_before) contradicted_tick_ = 0;
+  if (progress.mismatches != mismatches_) contradicted_tick_ = host_->room(persona_.room).tick();
   mismatches_ = progress.mismatches;
   if (persona_.profile == protocol::Profile::kExact) {
     observer_->check_state(*follower_);
@@ -291,6 +293,8 @@ void SimClient::calm() {
   mischief_ = {};
   if (!wire_) return;
   wire_->calm();
+  // What it has said of that comes at once now, if it was on the way.
+  if (contradicted_tick_ != 0) contradicted_tick_ = host_->room(persona_.room).tick();
   if (wire_->flips_up || wire_->flips_down) leave("nothing is owed to a damaged connection");
 }
 
@@ -306,14 +310,25 @@ std::string SimClient::lacks() const {
   if (observer_->disturbed()) return "is desynced";
   if (observer_->verified_tick() != progress.last_tick)
     return "holds a state that was not found right";
-  const std::uint64_t made = room.tick();
+  return lags(room.tick());
+}
+
+/// "" where it has seen what it can have seen of a match in which so many ticks are made.
+std::string SimClient::lags(std::uint64_t made) const {
+  constexpr std::uint64_t kOnTheWay = 4;
+  const std::uint64_t last = follower_->progress().last_tick;
   const std::uint64_t late = observer_->delay_ticks();
+  // The server has heard that its state was wrong, and says no more until it can send another; but
+  // not where that tick was taken back meanwhile.
+  if (contradicted_tick_ != 0 && last + late <= contradicted_tick_ + kOnTheWay) {
+    return "waits for a state, for it was desynced";
+  }
   // Who sees the match late is shown kept states, where it is shown states, when one is due.
   const std::uint64_t between =
       settings_->limits.snapshot_ticks + (late > 0 ? settings_->limits.keyframe_ticks : 0);
-  const std::uint64_t most = 4 + late + (lockstep() ? 0 : between);
-  if (progress.last_tick + most >= made) return "";
-  return "is at tick " + std::to_string(progress.last_tick) + " of " + std::to_string(made);
+  const std::uint64_t most = kOnTheWay + late + (lockstep() ? 0 : between);
+  if (last + most >= made) return "";
+  return "is at tick " + std::to_string(last) + " of " + std::to_string(made);
 }
 
 }  // namespace cycloid::sim

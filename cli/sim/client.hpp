@@ -72,6 +72,7 @@ class SimClient {
   void compare_unconfirmed(std::uint64_t tick);
   void send();
   void look_at_the_clock();
+  std::string lags(std::uint64_t made) const;
   void finish(const std::string& why);
   void leave(const std::string& why);
   void blame(const std::string& what);
@@ -126,6 +127,8 @@ class SimClient {
   std::int64_t pinged_local_ns_ = 0;
   std::int64_t farewell_until_ns_ = kNever;
   std::uint64_t mismatches_ = 0;
+  /// The room's when a digest was last found to differ, until an exact state comes; 0: none did.
+  std::uint64_t contradicted_tick_ = 0;
   bool ended_ = false;
 };
 
