@@ -43,12 +43,12 @@ struct Stretch {
   double behind = 0.0;            ///< Ticks of all rooms.
   double control_worst_ms = 0.0;  ///< How late the bare timer was at most.
 
-  /// Whether the machine kept even a timer that does nothing from a whole tick.
-  bool machine_stood_still() const { return control_worst_ms > kTick_ms; }
+  /// Whether even a timer that does nothing missed a whole tick.
+  bool control_missed() const { return control_worst_ms > kTick_ms; }
 };
 
 /// Asks the server from time to time how many of its ticks were behind: beside the bare timer of
-/// the same seconds it tells who was late, the server or the machine.
+/// the same seconds it tells when the server was late alone.
 class OverrunWatch {
  public:
   /// @param control  Outlives the watch.
@@ -58,12 +58,13 @@ class OverrunWatch {
   ~OverrunWatch();
   /// Until then nothing is asked.
   void begin();
-  /// The stretches with ticks behind, in their order.
+  /// The stretches with ticks behind, in their order, up to where the server did not answer.
   std::vector<Stretch> stop();
 
  private:
   enum class Phase : std::uint8_t { kWaits, kWatches, kEnds };
   void run();
+  void watch();
   /// Waits for the end of the stretch. @returns whether the watch is over.
   bool wait_for_stretch();
   void end();

@@ -62,12 +62,13 @@ struct ScenarioResult {
   std::vector<Stretch> overruns;
   std::vector<GroupResult> groups;
 
-  /// Overruns of seconds in which the bare timer was in time: those are the server's.
+  /// Overruns of seconds in which the bare timer was in time: those are the server's for sure. Of
+  /// the others it is not known, for a server that fills all cores makes a timer late as well.
   double own_overruns() const;
 };
 
 /// What the server has not held up, in sentences: clients that were refused, lost or never let in,
-/// and ticks that began in the time of others while the machine did not stand still.
+/// and ticks that began in the time of others, whoever was late.
 std::vector<std::string> failures_of(const ScenarioResult& result);
 
 /// Starts the server, connects the clients, waits for the warm-up, measures, ends the server.

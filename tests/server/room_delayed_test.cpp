@@ -14,6 +14,17 @@ class RoomDelayed : public RoomTest {
     options.limits.keyframe_bytes_max = 1;  // What is needed is kept all the same.
     open_with(options);
   }
+  /// It is 20 ticks behind a match of 75, has seen tick 55, and says that its state of 54 is wrong:
+  /// the state kept of tick 49 would be a step back, so none comes yet.
+  PeerId spectator_whose_state_is_due() {
+    open_delayed(20);
+    const PeerId id = enter(protocol::kSpectator);
+    run(75);
+    EXPECT_EQ(only<protocol::InputFrame>(hear(id)).back().tick, 55u);
+    say(id, protocol::Digest{54, 0xbad});
+    EXPECT_FALSE(room_->has_output(id));
+    return id;
+  }
   /// The latest tick that any of these messages tells about.
   static std::uint64_t latest(const std::vector<protocol::ServerMessage>& messages) {
     std::uint64_t tick = 0;
@@ -125,12 +136,7 @@ TEST_F(RoomDelayed, ARewindAnnouncesTheKeptStateThatComes) {
 }
 
 TEST_F(RoomDelayed, AStateThatMendsIsNotOlderThanTheFramesBefore) {
-  open_delayed(20);
-  const PeerId id = enter(protocol::kSpectator);
-  run(75);
-  ASSERT_EQ(only<protocol::InputFrame>(hear(id)).back().tick, 55u);
-  say(id, protocol::Digest{54, 0xbad});
-  EXPECT_FALSE(room_->has_output(id)) << "the state of tick 49 would be a step back";
+  const PeerId id = spectator_whose_state_is_due();
   run(1);
   const auto messages = hear(id);
   ASSERT_FALSE(only<protocol::SnapshotPart>(messages).empty());
@@ -142,12 +148,7 @@ TEST_F(RoomDelayed, AStateThatMendsIsNotOlderThanTheFramesBefore) {
 }
 
 TEST_F(RoomDelayed, ARewindIsToldToWhoseStateIsDueForTheFramesThatItHasSeen) {
-  open_delayed(20);
-  const PeerId id = enter(protocol::kSpectator);
-  run(75);
-  ASSERT_EQ(only<protocol::InputFrame>(hear(id)).back().tick, 55u);
-  say(id, protocol::Digest{54, 0xbad});
-  ASSERT_FALSE(room_->has_output(id)) << "the state is due, and there is none yet";
+  const PeerId id = spectator_whose_state_is_due();
   ASSERT_TRUE(room_->rewind(50));
   const auto notices = only<protocol::RoomNotice>(hear(id));
   ASSERT_EQ(notices.size(), 1u) << "it has seen five frames that were taken back";
