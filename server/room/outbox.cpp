@@ -7,14 +7,18 @@ namespace cycloid::server {
 bool Outbox::push(Item item) {
   const std::size_t bytes = item.bytes->size();
   if (bytes_ + bytes > bytes_max_) return false;
-  bytes_ += bytes;
-  queue_.push_back(std::move(item));
+  append(std::move(item));
   return true;
 }
 
+void Outbox::append(Item item) {
+  bytes_ += item.bytes->size();
+  queue_.push_back(std::move(item));
+}
+
 void Outbox::push_last(Shared bytes) {
-  if (snapshot_) queue_.push_back({std::exchange(snapshot_, nullptr), 0, false});
-  queue_.push_back({std::move(bytes), 0, false});
+  if (snapshot_) append({std::exchange(snapshot_, nullptr), 0, false});
+  append({std::move(bytes), 0, false});
 }
 
 void Outbox::begin_state(std::shared_ptr<const ExactState> state) {
@@ -46,13 +50,23 @@ std::optional<std::int64_t> Outbox::oldest_frame_ns() const {
 }
 
 bool Outbox::has_output(std::uint32_t parts_max) const {
-  return !queue_.empty() || (state_ ? parts_max > 0 : snapshot_ != nullptr);
+  if (!state_) return !queue_.empty() || snapshot_ != nullptr;
+  return parts_max > 0 || (next_part_ > 0 ? !queue_.empty() : before_state_ > 0);
+}
+
+void Outbox::take_items(std::size_t count, std::vector<Shared>& output) {
+  for (; count > 0; --count) {
+    bytes_ -= queue_.front().bytes->size();
+    output.push_back(std::move(queue_.front().bytes));
+    queue_.pop_front();
+  }
 }
 
 std::vector<Shared> Outbox::take(std::uint32_t& parts_max) {
   std::vector<Shared> output;
-  const auto first = queue_.begin() + static_cast<std::ptrdiff_t>(before_state_);
-  for (auto it = queue_.begin(); it != first; ++it) output.push_back(std::move(it->bytes));
+  take_items(std::exchange(before_state_, 0), output);
+  // What follows a state makes no sense to who has nothing of it yet.
+  if (state_ && next_part_ == 0 && parts_max == 0) return output;
   while (state_ && parts_max > 0) {
     --parts_max;
     output.push_back(state_->part(next_part_));
@@ -60,10 +74,7 @@ std::vector<Shared> Outbox::take(std::uint32_t& parts_max) {
     state_.reset();
     next_part_ = 0;
   }
-  for (auto it = first; it != queue_.end(); ++it) output.push_back(std::move(it->bytes));
-  queue_.clear();
-  bytes_ = 0;
-  before_state_ = 0;
+  take_items(queue_.size(), output);
   // A snapshot may differ from the state, so it comes after the whole of it.
   if (snapshot_ && !state_) output.push_back(std::exchange(snapshot_, nullptr));
   return output;

@@ -42,7 +42,8 @@ class Outbox {
   std::optional<std::int64_t> oldest_frame_ns() const;
   /// Whether `take` with such a number of parts would give anything.
   bool has_output(std::uint32_t parts_max) const;
-  /// All that waits, in order, and of the state the next parts, whose number is taken off.
+  /// All that waits, in order, and of the state the next parts, whose number is taken off. What
+  /// came after a state waits for its first part.
   std::vector<Shared> take(std::uint32_t& parts_max);
 
  private:
@@ -52,6 +53,8 @@ class Outbox {
     bool is_frame = false;
   };
   bool push(Item item);
+  void append(Item item);
+  void take_items(std::size_t count, std::vector<Shared>& output);
 
   std::size_t bytes_max_;
   std::size_t bytes_ = 0;

@@ -77,6 +77,31 @@ TEST(Outbox, AStateTakesThePlaceOfFramesAndComesBetweenThem) {
   EXPECT_EQ(parts, 1u);
 }
 
+// A state that begins anew in a tick whose share of parts is gone: a frame of a tick after it would
+// come to who has nothing that it continues.
+TEST(Outbox, WhatFollowsAStateWaitsForItsFirstPart) {
+  Outbox outbox(1000);
+  outbox.begin_state(state_of(5, 5 * protocol::kSnapshotPartBytesMax));
+  std::uint32_t parts = 2;
+  EXPECT_EQ(outbox.take(parts).size(), 2u);
+  ASSERT_TRUE(outbox.push_control(bytes_of(2), 1));
+  outbox.begin_state(state_of(6, 2 * protocol::kSnapshotPartBytesMax));
+  ASSERT_TRUE(outbox.push_frame(bytes_of(3), 2));
+  ASSERT_TRUE(outbox.has_output(parts));
+  auto output = outbox.take(parts);
+  ASSERT_EQ(output.size(), 1u);
+  EXPECT_EQ(output[0]->size(), 2u) << "what was said before it";
+  EXPECT_FALSE(outbox.has_output(parts));
+  EXPECT_EQ(outbox.bytes(), 3u);
+  EXPECT_EQ(outbox.oldest_frame_ns(), 2);
+  parts = 1;
+  output = outbox.take(parts);
+  ASSERT_EQ(output.size(), 2u);
+  EXPECT_GT(output[0]->size(), protocol::kSnapshotPartBytesMax);
+  EXPECT_EQ(output[1]->size(), 3u) << "once it has begun, frames go on between its parts";
+  EXPECT_EQ(outbox.bytes(), 0u);
+}
+
 TEST(Outbox, KnowsItsOldestFrameAndNotItsOldestWord) {
   Outbox outbox(1000);
   ASSERT_TRUE(outbox.push_control(bytes_of(1), 5));
