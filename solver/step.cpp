@@ -86,8 +86,11 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   const Tracer<D> traced{state, scratch, &read_blocks<D, W>};
   prepare_contacts<D, W>(context, state, workers, scratch);
   prepare_islands<D, W>(context, scratch);
+  const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
+  scratch.substeps = paced.tuning.substeps;
   traced(Phase::kPrepare);
-  solve_substeps<D, W>(context, state, traced, workers, scratch);
+  solve_substeps<D, W>(paced, state, traced, workers, scratch);
+  if (paced.h != context.h) rescale_impulses<D, W>(context.h / paced.h, scratch);
   store_impulses<D, W>(workers, scratch);
   traced(Phase::kStore);
   stop_fast_bodies(context, state, workers, scratch);
@@ -197,7 +200,8 @@ static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch
     if (row.solved_directly) statistics.direct_rows += static_cast<std::uint32_t>(row.rows.count);
   }
   const Tuning& tuning = state.header.tuning;
-  statistics.rows = std::uint64_t{statistics.rows_per_sweep} * tuning.substeps *
+  statistics.substeps = scratch.substeps;
+  statistics.rows = std::uint64_t{statistics.rows_per_sweep} * scratch.substeps *
                     (tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps);
   // A product of blocks has as many terms as a row and its impulse in the plane, eight times as
   // many in space: else islands at once would look cheaper than they are.

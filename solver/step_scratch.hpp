@@ -113,6 +113,7 @@ struct StepScratch : KeptByWorld<D> {
              ContactBlocks<D, kAvx2Lanes>>
       contact_blocks;                          ///< Only that of the chosen width is filled.
   std::vector<Acceleration<D>> accelerations;  ///< Of awake_bodies.
+  std::uint32_t substeps = 0;                  ///< Of this tick.
   std::uint32_t poses = 0;  ///< Grows whenever positions have moved in this tick.
 };
 

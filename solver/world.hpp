@@ -46,6 +46,7 @@ struct Statistics {
   std::uint32_t pairs = 0;     ///< Pairs whose bounds overlap.
   std::uint32_t contacts = 0;  ///< Pairs with at least one contact point.
   std::uint32_t colors = 0;
+  std::uint32_t substeps = 0;  ///< Taken: fewer than asked for where islands at once have all.
   std::uint32_t rows_per_sweep = 0;
   std::uint32_t turning_rows_per_sweep = 0;  ///< Contact rows with an angular part.
   std::uint32_t direct_rows = 0;             ///< Joint rows that the tree solver solves at once.
@@ -100,7 +101,8 @@ class World {
   /// each step, by the contacts that there are and what the processor has. Changes no bit.
   Error set_lanes(int lanes);
 
-  /// Advances one tick: `tuning.substeps` substeps of tick_s / substeps.
+  /// Advances one tick: `tuning.substeps` substeps of tick_s / substeps; under kLoadedIsland half
+  /// as many where islands are solved at once that have all that moves.
   ///
   /// Forces and torques apply for this tick and are cleared. When a value would leave the finite,
   /// bounded range, nothing is committed: the world keeps the state of the tick before, enters the

@@ -50,6 +50,7 @@ struct JointRow : ConeLimit<D> {
   float impulse_max[2];  ///< N s and N m s; length of a block's impulse.
   bool in_island;        ///< The equalities belong to the island solver.
   bool solved_directly;  ///< They belong to it or to the tree solver.
+  bool relaxes;          ///< All the same relax sweeps act on it.
 
   bool spring_enabled;
   bool limit_enabled;

@@ -138,9 +138,7 @@ void solve(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, Motion<
     }
     if (row.limit_near) solve_cone(context, sweep, row, a, b);
   }
-  // What an island solved at once has its bias still to lose.
-  const bool relaxes = row.in_island && sweep == Sweep::kRelax;
-  if (row.solved_directly && !relaxes) return;
+  if (row.solved_directly && !(row.relaxes && sweep == Sweep::kRelax)) return;
   solve_block(context, sweep, 0, row, a, b);
   if (!rubs_first) solve_block(context, sweep, 1, row, a, b);
 }

@@ -67,7 +67,7 @@ void IslandSolver<D>::foresee_turns(const Island& island, std::span<const Motion
 /// they are thrown with stays in the world as energy.
 /// @pre `solution_` is of the matrix as it is factored.
 template <int D>
-void IslandSolver<D>::close_joints(const Island& island) {
+void IslandSolver<D>::close_joints(Island& island) {
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     correction[static_cast<std::size_t>(n)] = Vector::zero();
   Wide fastest = 0.0;
@@ -81,7 +81,8 @@ void IslandSolver<D>::close_joints(const Island& island) {
     }
     fastest = std::max(fastest, root(square));
   }
-  if (fastest < kLetBe) return;
+  island.closes = fastest >= kLetBe;
+  if (!island.closes) return;
   matrix.solve(island.steps, correction);
   const Wide share = share_of_correction(island, std::max(kMoved, kMovedShare * fastest));
   for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
@@ -99,7 +100,7 @@ void IslandSolver<D>::close_joints(const Island& island) {
 
 template void IslandSolver<2>::foresee_turns(const Island&, std::span<const Motion<2>>, Wide);
 template void IslandSolver<3>::foresee_turns(const Island&, std::span<const Motion<3>>, Wide);
-template void IslandSolver<2>::close_joints(const Island&);
-template void IslandSolver<3>::close_joints(const Island&);
+template void IslandSolver<2>::close_joints(Island&);
+template void IslandSolver<3>::close_joints(Island&);
 
 }  // namespace cycloid::solver

@@ -120,6 +120,7 @@ class IslandSolver {
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
     bool stirred;   ///< The substep before had to solve it.
     bool corrects;  ///< `correction` of its nodes is not 0.
+    bool closes;    ///< Its joints were closed by velocities, which are still to lose that.
   };
 
   /// Where the rows of a group come from.
@@ -156,6 +157,7 @@ class IslandSolver {
   std::vector<Vector> correction;          ///< By node: speed for positions alone.
   std::vector<std::uint32_t> loaded;       ///< Slots of bodies whose load calls for this solver.
   bool acts = false;                       ///< In this tick, on some island.
+  bool has_all = false;                    ///< All that moves, in substeps of twice the length.
   bool only_thin = false;                  ///< What was planned holds for thin islands alone.
   IslandWork work;
 
@@ -182,7 +184,7 @@ class IslandSolver {
   Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);
   void keep_of_guess(const Island& island, Wide share);
   void foresee_turns(const Island& island, std::span<const Motion<D>> motions, Wide h);
-  void close_joints(const Island& island);
+  void close_joints(Island& island);
   void choose(const Island& island);
   bool let_go(const Island& island);
   void assemble(const Island& island, std::span<const BodyMass<D>> masses,

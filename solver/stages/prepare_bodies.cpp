@@ -2,8 +2,17 @@
 
 namespace cycloid::solver {
 
-/// (s g + f / m) and I^-1 torque, and what damping c [1/s] leaves: 1 / (1 + h c), which is
-/// implicit, so stable for every h. Bodies without mass keep their velocities.
+/// What damping c [1/s] leaves in a substep: 1 / (1 + h c), which is implicit, so stable for every
+/// h. @pre the body has mass.
+template <int D>
+static void dampen(float h, const Body<D>& body, Acceleration<D>& of) {
+  for (int i = 0; i < D; ++i) of.factor[i] = 1.0f / (1.0f + h * body.linear_damping);
+  for (int i = 0; i < Dim<D>::kSpin; ++i)
+    of.factor[D + i] = 1.0f / (1.0f + h * body.angular_damping);
+}
+
+/// (s g + f / m) and I^-1 torque, and what damping leaves. Bodies without mass keep their
+/// velocities.
 template <int D>
 static Acceleration<D> acceleration_of(const StepContext<D>& context, const Body<D>& body,
                                        const BodyMass<D>& mass) {
@@ -13,14 +22,9 @@ static Acceleration<D> acceleration_of(const StepContext<D>& context, const Body
   if (body.inverse_mass == 0.0f) return of;
   const Vec<D> linear = body.gravity_scale * context.gravity + body.inverse_mass * body.force;
   const Spin<D> angular = mass.inverse_inertia * body.torque;
-  for (int i = 0; i < D; ++i) {
-    of.factor[i] = 1.0f / (1.0f + context.h * body.linear_damping);
-    of.rate[i] = linear[i];
-  }
-  for (int i = 0; i < Dim<D>::kSpin; ++i) {
-    of.factor[D + i] = 1.0f / (1.0f + context.h * body.angular_damping);
-    of.rate[D + i] = angular[i];
-  }
+  for (int i = 0; i < D; ++i) of.rate[i] = linear[i];
+  for (int i = 0; i < Dim<D>::kSpin; ++i) of.rate[D + i] = angular[i];
+  dampen(context.h, body, of);
   return of;
 }
 
@@ -53,6 +57,17 @@ void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, W
   });
 }
 
+template <int D>
+void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
+                   StepScratch<D>& scratch) {
+  for (std::size_t place = 0; place < scratch.awake_bodies.size(); ++place) {
+    const Body<D>& body = state.bodies[scratch.awake_bodies[place]];
+    if (body.inverse_mass > 0.0f) dampen(context.h, body, scratch.accelerations[place]);
+  }
+}
+
+template void dampen_bodies(const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);
+template void dampen_bodies(const StepContext<3>&, const WorldState<3>&, StepScratch<3>&);
 template void prepare_bodies(const StepContext<2>&, const WorldState<2>&, Workers&,
                              StepScratch<2>&);
 template void prepare_bodies(const StepContext<3>&, const WorldState<3>&, Workers&,

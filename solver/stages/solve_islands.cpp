@@ -72,7 +72,9 @@ static bool is_restless(const StepContext<D>& context, const StepScratch<D>& scr
   return any_joint_misses(context, scratch, island, island.stirred ? kRest.stirs : kRest.misses);
 }
 
-/// Tells the sweeps what is left to them of an island.
+/// Tells the sweeps what is left to them of an island. Relax sweeps turn the speeds of joints into
+/// where their rows have turned, and take back what closed them; in a tick whose islands have all,
+/// the solve of the next substep does the first.
 template <int D, int W>
 static void hand_over(const typename IslandSolver<D>::Island& island, bool sweeps_joints,
                       bool sweeps_contacts, StepScratch<D>& scratch) {
@@ -85,6 +87,7 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
     scratch.joint_rows[place].solved_directly = !sweeps_joints;
+    scratch.joint_rows[place].relaxes = island.closes || !solver.has_all;
   }
 }
 
@@ -149,7 +152,7 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   for (auto& island : solver.islands) {
     if (island.weighed) weigh_island<D, W>(context, scratch, island);
     if (!island.taken) continue;
-    island.corrects = false;
+    island.corrects = island.closes = false;
     island.stirred = is_restless<D, W>(context, scratch, all, island);
     if (island.stirred) {
       solve_island<D, W>(context, scratch, island);

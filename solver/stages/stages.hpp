@@ -24,6 +24,10 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch);
 template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch);
+/// The part of prepare_bodies that depends on the length of a substep.
+template <int D>
+void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
+                   StepScratch<D>& scratch);
 template <int D>
 void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
                     StepScratch<D>& scratch);
@@ -50,6 +54,13 @@ template <int D, int W>
 void group_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>
 void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch);
+template <int D, int W>
+StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D>& state,
+                               StepScratch<D>& scratch);
+/// From those of substeps of one length to those of another, `scale` times as long: what holds
+/// bodies up is a force. Of what islands at once hold alone.
+template <int D, int W>
+void rescale_impulses(float scale, StepScratch<D>& scratch);
 template <int D, int W>
 void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D>

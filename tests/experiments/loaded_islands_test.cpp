@@ -90,7 +90,7 @@ TEST(LoadedIslands, HoldWhatSoftSweepsLetFall) {
     const char* trial;
     double most;
   };
-  constexpr Claim kClaims[] = {{"trial-heavy-on-light-1000", 0.005}, {"trial-stack-30", 0.01},
+  constexpr Claim kClaims[] = {{"trial-heavy-on-light-1000", 0.005}, {"trial-stack-30", 0.02},
                                {"trial-400-on-thin-ground", 0.01},   {"trial-arch", 0.05},
                                {"trial-ball-and-chain", 0.005},      {"trial-bridge", 0.005}};
   for (const Claim& claim : kClaims) {

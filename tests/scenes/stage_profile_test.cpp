@@ -38,10 +38,14 @@ TEST(StageProfiles, CountEveryPhaseAndLeaveNoTimeOut) {
   const Scene scene = *find("stack-10").scene;
   Simulation simulation = std::move(Simulation::create(scene).value());
   StageProfile profile(counting_clock);
-  for (std::uint64_t tick = 1; tick <= 10; ++tick)
+  std::uint64_t substeps = 0;
+  for (std::uint64_t tick = 1; tick <= 10; ++tick) {
     ASSERT_TRUE(profile.step(simulation, script(scene, tick)).ok());
+    substeps += simulation.statistics().substeps;
+  }
   EXPECT_EQ(profile.stage(solver::Phase::kCollide).calls, 10u);
-  EXPECT_EQ(profile.stage(solver::Phase::kSweep).calls, 10u * scene.tuning.substeps);
+  EXPECT_GE(substeps, 20u);
+  EXPECT_EQ(profile.stage(solver::Phase::kSweep).calls, substeps);
   EXPECT_EQ(profile.stage(solver::Phase::kProject).calls, 0u);
   std::uint64_t sum_ns = profile.rest_ns();
   for (std::uint32_t i = 0; i < solver::kPhases; ++i)
