@@ -262,6 +262,9 @@ std::optional<std::vector<std::byte>> decode_exact_delta(std::span<const std::by
   auto state = hear_delta(Baseline(state_layout(dimension), before), bytes_max, coder);
   if (!state || coder.has_more()) return std::nullopt;
   if (check_of(*state) != solver::load_little<std::uint32_t>(delta.data() + 1)) return std::nullopt;
+  // Who counts the check himself can say any header, and this state is the next one's baseline.
+  const std::optional<CutState> now = cut_state(*state);
+  if (!now || now->layout->dimension != dimension) return std::nullopt;
   return state;
 }
 

@@ -180,6 +180,15 @@ TEST(ExactDelta, IsMadeOfCanonicalEncodingsOnly) {
   EXPECT_FALSE(decode_exact_delta(cut, made.delta, kBytesMax));
 }
 
+// Found by a fuzzer that counts the check itself: without a baseline, of a state in the plane whose
+// header then says another dimension. The state would have been the next delta's baseline.
+TEST(ExactDelta, OfWhatIsNoEncodingIsRefusedThoughItsCheckIsRight) {
+  Encoding bytes;
+  for (const int byte : {0x12, 0x78, 0xef, 0x22, 0xc7, 0x00, 0x9b})
+    bytes.push_back(static_cast<std::byte>(byte));
+  EXPECT_FALSE(decode_exact_delta({}, bytes, 1u << 16));
+}
+
 TEST(RangeCoder, SaysAnyDecisionsAndNumbersBack) {
   std::mt19937 random(1);
   for (int round = 0; round < 300; ++round) {
