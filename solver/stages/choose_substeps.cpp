@@ -4,29 +4,30 @@ namespace cycloid::solver {
 
 /// How far a body may turn in one of fewer substeps, rad: at twice as much a chain of 50,000:1 that
 /// swings parts nearly twice as far, and without a bound it faults in every other run.
-static constexpr float kTurn = 0.025f;
+static constexpr float kTurn_rad = 0.025f;
 
 /// Whether islands that are solved at once have all that moves, and no sweep acts on any.
 template <int D>
 static bool islands_have_all(const StepScratch<D>& scratch) {
   const IslandSolver<D>& solver = scratch.islands_solved;
   if (!solver.acts || !solver.only_thin) return false;
-  std::size_t bodies = 0;
+  int taken = 0;
   for (const auto& island : solver.islands) {
     if (!island.taken || island.swept) return false;
-    bodies += static_cast<std::size_t>(island.bodies);
+    taken += island.bodies;
   }
   for (const JointRow<D>& row : scratch.joint_rows)
     if (!row.in_island) return false;
+  int awake = 0;
   for (const std::uint32_t slot : scratch.awake_bodies)
-    if (scratch.masses[slot].inverse_mass > 0.0f && bodies-- == 0) return false;
-  return bodies == 0;
+    if (scratch.masses[slot].inverse_mass > 0.0f) ++awake;
+  return awake == taken;
 }
 
 template <int D>
 static bool all_turn_little(float h, const StepScratch<D>& scratch) {
   for (const std::uint32_t slot : scratch.awake_bodies)
-    if (h * length(scratch.motions[slot].spin) > kTurn) return false;
+    if (h * length(scratch.motions[slot].spin) > kTurn_rad) return false;
   return true;
 }
 
