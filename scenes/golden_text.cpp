@@ -151,7 +151,10 @@ class GoldenReader {
       return "a row must be 'NAME TICK DIGEST ENCODED-BYTES CHAIN'";
     const auto place = places_.find(*name);
     if (place == places_.end()) return "there is no line 'scene " + *name + " ...'";
-    GoldenScene& scene = file_.scenes[place->second];
+    if (place->second < scene_)
+      return "the rows of '" + *name + "' must stand together, in the order of the scenes";
+    scene_ = place->second;
+    GoldenScene& scene = file_.scenes[scene_];
     const std::uint64_t before = scene.rows.empty() ? 0 : scene.rows.back().tick;
     if (*tick <= before || *tick > scene.ticks)
       return "tick " + std::to_string(*tick) + " of '" + *name + "' is not in " +
@@ -166,6 +169,7 @@ class GoldenReader {
 
   GoldenFile file_;
   std::map<std::string, std::size_t> places_;
+  std::size_t scene_ = 0;  ///< Of the last row.
   bool in_rows_ = false;
 };
 

@@ -94,6 +94,7 @@ TEST(Golden, EveryMistakeIsNamedWithItsLine) {
       {replaced(good, "half-pipe 10 000000000000000c", "half-pipe 11 000000000000000c"), 6,
        "2 to 10"},
       {replaced(good, row, "\n" + row), 6, "NAME TICK DIGEST"},
+      {replaced(good, row, "") + row, 7, "must stand together"},
       {replaced(good, row, ""), 7, "the row 'half-pipe 10 ...' is missing"},
       {good + "scene top 1 0000000000000001 0000000000000002\n", 8, "named before the first row"},
       {good.substr(0, good.size() - 1), 7, "the file is cut"},
