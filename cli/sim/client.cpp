@@ -326,7 +326,9 @@ std::string SimClient::lags(std::uint64_t made) const {
   // Who sees the match late is shown kept states, where it is shown states, when one is due.
   const std::uint64_t between =
       settings_->limits.snapshot_ticks + (late > 0 ? settings_->limits.keyframe_ticks : 0);
-  const std::uint64_t most = kOnTheWay + late + (lockstep() ? 0 : between);
+  // So is one for whom frames were dropped because it did not take them.
+  const bool waits = !lockstep() || (late > 0 && host_->room(persona_.room).has_overrun());
+  const std::uint64_t most = kOnTheWay + late + (waits ? between : 0);
   if (last + most >= made) return "";
   return "is at tick " + std::to_string(last) + " of " + std::to_string(made);
 }
