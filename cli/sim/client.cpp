@@ -326,9 +326,12 @@ std::string SimClient::lags(std::uint64_t made) const {
   // Who sees the match late is shown kept states, where it is shown states, when one is due.
   const std::uint64_t between =
       settings_->limits.snapshot_ticks + (late > 0 ? settings_->limits.keyframe_ticks : 0);
-  // So is one for whom frames were dropped because it did not take them.
-  const bool waits = !lockstep() || (late > 0 && host_->room(persona_.room).has_overrun());
-  const std::uint64_t most = kOnTheWay + late + (waits ? between : 0);
+  // So is one for whom frames were dropped, which had waited for it for so long.
+  const bool dropped = late > 0 && lockstep() && host_->room(persona_.room).has_overrun();
+  const auto waited = static_cast<std::uint64_t>(
+      settings_->limits.queue_age.count() * settings_->tick_rate_millihertz / (1000 * kSecond));
+  const std::uint64_t most =
+      kOnTheWay + late + (lockstep() && !dropped ? 0 : between) + (dropped ? waited : 0);
   if (last + most >= made) return "";
   return "is at tick " + std::to_string(last) + " of " + std::to_string(made);
 }

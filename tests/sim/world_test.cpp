@@ -75,6 +75,7 @@ constexpr std::uint64_t kFailedOnce[] = {
     // Frames were dropped for a late spectator whose stream stood still, and it waited for the next
     // kept state.
     1200005530,
+    1200010632,
 };
 
 TEST(SimWorld, HoldsItsInvariantsUnderSeedsThatOnceFailed) {
