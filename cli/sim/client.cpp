@@ -310,6 +310,7 @@ std::string SimClient::lacks() const {
   if (observer_->disturbed()) return "is desynced";
   if (observer_->verified_tick() != progress.last_tick)
     return "holds a state that was not found right";
+  if (room.owes_state(*wire_)) return "waits for a state, for frames were dropped";
   return lags(room.tick());
 }
 
@@ -326,12 +327,7 @@ std::string SimClient::lags(std::uint64_t made) const {
   // Who sees the match late is shown kept states, where it is shown states, when one is due.
   const std::uint64_t between =
       settings_->limits.snapshot_ticks + (late > 0 ? settings_->limits.keyframe_ticks : 0);
-  // So is one for whom frames were dropped, which had waited for it for so long.
-  const bool dropped = late > 0 && lockstep() && host_->room(persona_.room).has_overrun();
-  const auto waited = static_cast<std::uint64_t>(
-      settings_->limits.queue_age.count() * settings_->tick_rate_millihertz / (1000 * kSecond));
-  const std::uint64_t most =
-      kOnTheWay + late + (lockstep() && !dropped ? 0 : between) + (dropped ? waited : 0);
+  const std::uint64_t most = kOnTheWay + late + (lockstep() ? 0 : between);
   if (last + most >= made) return "";
   return "is at tick " + std::to_string(last) + " of " + std::to_string(made);
 }

@@ -47,8 +47,9 @@ class RoomHost {
   std::uint64_t tick() const { return room_ ? room_->tick() : 0; }
   std::size_t eras() const { return ledgers_.size(); }
   std::size_t era() const { return ledgers_.size() - 1; }
-  /// Whether the server has dropped what waited for somebody who did not take it.
-  bool has_overrun() const { return room_ && room_->statistics().overruns > 0; }
+  /// Whether the server has dropped what waited for a connection, and has yet to write the state
+  /// that takes its place.
+  bool owes_state(const Wire& wire) const;
   Ledger& ledger(std::size_t era) { return *ledgers_[era]; }
   /// Somebody in this era may say digests that are wrong.
   void excuse_desyncs() { desyncs_excused_ = true; }

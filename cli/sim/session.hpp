@@ -39,6 +39,10 @@ class Session {
   void die() { wire_->reset(); }
   bool closed() const { return closed_; }
 
+  bool is_over(const Wire& wire) const { return wire_.get() == &wire; }
+  /// The room has yet to hand out all of an exact state.
+  bool waits_for_state() const { return stage_ == Stage::kRoom && house_.room->owes_state(id_); }
+
   /// That a welcome gave it, while the room has not sent it away; or below 0.
   std::int32_t seat() const { return closed_ || is_dismissed() ? -1 : seat_; }
 

@@ -109,6 +109,12 @@ std::vector<Shared> Room::take_output(PeerId id) {
   return output;
 }
 
+bool Room::owes_state(PeerId id) const {
+  const auto found = peers_.find(id);
+  if (found == peers_.end() || !found->second.playing()) return false;
+  return found->second.state_due || found->second.outbox.state_waits();
+}
+
 bool Room::wants_close(PeerId id) const {
   const auto found = peers_.find(id);
   return found == peers_.end() || found->second.stage == PeerStage::kClosing;

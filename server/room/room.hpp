@@ -111,6 +111,8 @@ class Room {
   /// All that waits for the peer and may leave in this tick, in order: one write. To be called when
   /// the connection can take it, for exact states are made only then.
   std::vector<Shared> take_output(PeerId id);
+  /// Whether the peer's next frame or snapshot waits for an exact state to be begun and taken.
+  bool owes_state(PeerId id) const;
   /// Close the connection once its output is written.
   bool wants_close(PeerId id) const;
 

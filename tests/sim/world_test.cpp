@@ -72,8 +72,8 @@ constexpr std::uint64_t kFailedOnce[] = {
     // What one wrong bit did to a late spectator had died out by itself, but the server had heard
     // of it and sent nothing more before the next kept state.
     1795454436957,
-    // Frames were dropped for a late spectator whose stream stood still, and it waited for the next
-    // kept state.
+    // Frames were dropped for a late spectator whose stream stood still; the check took it for in
+    // sync while the room owed it the next kept state.
     1200005530,
     1200010632,
 };
