@@ -106,6 +106,12 @@ void RoomHost::accept(std::shared_ptr<Wire> wire) {
                          settings_->limits, settings_->plant, *chronicle_);
 }
 
+bool RoomHost::serves(const Wire& wire) const {
+  return std::any_of(sessions_.begin(), sessions_.end(), [&](const Session& session) {
+    return session.is_over(wire) && session.is_served();
+  });
+}
+
 bool RoomHost::owes_state(const Wire& wire) const {
   return std::any_of(sessions_.begin(), sessions_.end(), [&](const Session& session) {
     return session.is_over(wire) && session.waits_for_state();

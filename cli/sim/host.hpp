@@ -47,6 +47,8 @@ class RoomHost {
   std::uint64_t tick() const { return room_ ? room_->tick() : 0; }
   std::size_t eras() const { return ledgers_.size(); }
   std::size_t era() const { return ledgers_.size() - 1; }
+  /// Whether the room has let a connection in, and has not sent it away since.
+  bool serves(const Wire& wire) const;
   /// Whether the server has dropped what waited for a connection, and has yet to write the state
   /// that takes its place.
   bool owes_state(const Wire& wire) const;

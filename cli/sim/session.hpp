@@ -40,6 +40,7 @@ class Session {
   bool closed() const { return closed_; }
 
   bool is_over(const Wire& wire) const { return wire_.get() == &wire; }
+  bool is_served() const { return stage_ == Stage::kRoom && !closed_ && !is_dismissed(); }
   /// The room has yet to hand out all of an exact state.
   bool waits_for_state() const { return stage_ == Stage::kRoom && house_.room->owes_state(id_); }
 
