@@ -152,6 +152,13 @@ inline bool read_bytes(const flatbuffers::Vector<std::uint8_t>* from, std::size_
   return true;
 }
 
+/// Whether the elements lie where numbers of their size may: the verifier of FlatBuffers looks at
+/// the length before them alone, which is one of 4 bytes.
+template <class T>
+bool is_aligned(const flatbuffers::Vector<T>& from) {
+  return reinterpret_cast<std::uintptr_t>(from.Data()) % alignof(T) == 0;
+}
+
 /// A secret of a fixed size, or none.
 inline bool read_resume(const flatbuffers::Vector<std::uint8_t>* from, std::vector<std::byte>& into,
                         std::string& error) {

@@ -92,6 +92,9 @@ std::optional<TickDigests> read(const wire::TickDigests& from, std::string& erro
     return refuse<TickDigests>(
         error, std::to_string(count) + " digests from tick " + std::to_string(from.first_tick()));
   }
+  if (!is_aligned(*from.digests())) {
+    return refuse<TickDigests>(error, "digests that are not aligned");
+  }
   TickDigests said{from.first_tick(), {}};
   for (const std::uint64_t digest : *from.digests()) said.digests.push_back(digest);
   return said;

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdint>
+#include <cstring>
 #include <variant>
 
 #include "protocol/utf8.hpp"
@@ -154,6 +155,33 @@ TEST(Codec, TheOtherDirectionIsRefused) {
   EXPECT_EQ(decode_client(samples::payload_of(digest)).error, "the file identifier is not CYCM");
   const Bytes ping = encode(ClientMessage(Ping{1}));
   EXPECT_EQ(decode_server(samples::payload_of(ping)).error, "the file identifier is not CYSM");
+}
+
+/// What fuzzing found: FlatBuffers verifies that the length of a vector is aligned, and not that
+/// its elements are, which may be of 8 bytes.
+TEST(Codec, DigestsThatAreNotAlignedAreRefused) {
+  const Bytes honest = encode(ClientMessage(TickDigests{1, {0x1122334455667788u}}));
+  const auto payload = samples::payload_of(honest);
+  Bytes moved(payload.begin(), payload.end());
+  const auto number_at = [&](std::size_t at) {
+    std::uint32_t number = 0;
+    std::memcpy(&number, moved.data() + at, sizeof number);
+    return number;
+  };
+  const std::size_t vector =
+      moved.size() - 12;  // Its length, then the one digest: all comes before.
+  ASSERT_EQ(number_at(vector), 1u);
+  ASSERT_EQ(number_at(vector + 4), 0x55667788u);
+  int offsets = 0;
+  for (std::size_t at = 0; at < vector; at += 4) {
+    if (at + number_at(at) != vector) continue;
+    const std::uint32_t farther = number_at(at) + 4;
+    std::memcpy(moved.data() + at, &farther, sizeof farther);
+    ++offsets;
+  }
+  ASSERT_EQ(offsets, 1);
+  moved.insert(moved.begin() + static_cast<std::ptrdiff_t>(vector), 4, std::byte{});
+  EXPECT_EQ(decode_client(moved).error, "digests that are not aligned");
 }
 
 TEST(Codec, ValuesOutOfRangeAreRefusedByName) {
