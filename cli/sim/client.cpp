@@ -303,8 +303,8 @@ std::string SimClient::lacks() const {
   if (!host_->listens(persona_.room)) return "has no server";
   if (room.doomed()) return "is in a room whose log has ended";
   const bool connected = wire_ && !wire_->down.is_reset() && wire_->era == room.era() &&
-                         !wire_->up.finished() && !wire_->up.is_lost() &&
-                         !wire_->down.is_lost() && room.serves(*wire_);
+                         !wire_->up.finished() && !wire_->up.is_lost() && !wire_->down.is_lost() &&
+                         room.serves(*wire_);
   if (!connected || farewell_until_ns_ != kNever) return "has no connection";
   const client::Progress& progress = follower_->progress();
   if (progress.phase != client::Phase::kRunning) return "has no state yet";
