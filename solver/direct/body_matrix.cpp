@@ -1,6 +1,7 @@
 #include "solver/direct/body_matrix.hpp"
 
 #include <algorithm>
+#include <utility>
 
 namespace cycloid::solver {
 
@@ -10,14 +11,14 @@ void BodyMatrix<D>::begin(int nodes) {
   first_link_.assign(count, -1);
   degree_.assign(count, 0);
   eliminated_.assign(count, 0);
+  is_last_.assign(count, 0);
   links_.clear();
   steps_.assign(1, Step{-1, 0, 0});
   entries_.clear();
   targets_.clear();
   diagonal_.resize(count);
-  inverse_.resize(count);
+  pivots_.resize(count);
   beside_.clear();
-  products_ = 0;
 }
 
 template <int D>
@@ -47,12 +48,20 @@ int BodyMatrix<D>::join(int a, int b) {
   return block;
 }
 
-/// Puts a node in line by its present degree. No two entries in line are of the same degree and
-/// node, or they are the same; so who comes next depends on nothing else.
+/// By which nodes stand in line: the degree, behind all those that are not put last.
+template <int D>
+int BodyMatrix<D>::rank(int node) const {
+  constexpr int kBehindAll = 1 << 28;
+  const auto at = static_cast<std::size_t>(node);
+  return degree_[at] + (is_last_[at] != 0 ? kBehindAll : 0);
+}
+
+/// Puts a node in line by its present degree. Two entries in line of the same rank and step are of
+/// different nodes, or they are the same; so who comes next depends on nothing else.
 template <int D>
 void BodyMatrix<D>::wait(int node) {
   std::size_t at = heap_.size();
-  heap_.push_back({degree_[static_cast<std::size_t>(node)], node});
+  heap_.push_back({rank(node), static_cast<int>(steps_.size()), node});
   while (at > 0 && heap_[at] < heap_[(at - 1) / 2]) {
     std::swap(heap_[at], heap_[(at - 1) / 2]);
     at = (at - 1) / 2;
@@ -62,7 +71,7 @@ void BodyMatrix<D>::wait(int node) {
 /// The node whose entry is the least, which leaves the line.
 template <int D>
 int BodyMatrix<D>::take_least() {
-  const int node = heap_.front().second;
+  const int node = heap_.front().node;
   heap_.front() = heap_.back();
   heap_.pop_back();
   for (std::size_t at = 0, child = 1; child < heap_.size(); child = 2 * at + 1) {
@@ -72,6 +81,11 @@ int BodyMatrix<D>::take_least() {
     at = child;
   }
   return node;
+}
+
+/// Block products that eliminating a node of so many neighbours takes.
+static int products_of(int neighbours) {
+  return neighbours + neighbours * (neighbours + 1) / 2;
 }
 
 /// Takes a node out of the graph and joins its neighbours. @returns the block products it takes.
@@ -96,8 +110,7 @@ int BodyMatrix<D>::eliminate(int node) {
   for (std::size_t i = begin; i < entries_.size(); ++i) {
     wait(entries_[i].node);
   }
-  const int count = static_cast<int>(entries_.size() - begin);
-  return count + count * (count + 1) / 2;
+  return products_of(static_cast<int>(entries_.size() - begin));
 }
 
 template <int D>
@@ -108,10 +121,10 @@ bool BodyMatrix<D>::analyse(Range nodes, int products_max, Range& steps) {
   for (int node = nodes.begin; node < nodes.end; ++node) wait(node);
   int products = 0;
   while (!heap_.empty() && products <= products_max) {
-    const int degree = heap_.front().first;
+    const int rank_then = heap_.front().rank;
     const int node = take_least();
     const auto at = static_cast<std::size_t>(node);
-    if (eliminated_[at] != 0 || degree != degree_[at]) continue;  // Its degree is an old one.
+    if (eliminated_[at] != 0 || rank_then != rank(node)) continue;  // Its degree is an old one.
     products += eliminate(node);
     steps_.back().node = node;
     steps_.push_back({-1, static_cast<int>(entries_.size()), static_cast<int>(targets_.size())});
@@ -123,9 +136,29 @@ bool BodyMatrix<D>::analyse(Range nodes, int products_max, Range& steps) {
     targets_.resize(static_cast<std::size_t>(first.targets));
     return false;
   }
-  products_ += static_cast<std::uint64_t>(products);
   steps = {begin, static_cast<int>(steps_.size()) - 1};
   return true;
+}
+
+template <int D>
+Range BodyMatrix<D>::last_of(Range steps) const {
+  int first = steps.end;
+  while (first > steps.begin) {
+    const int node = steps_[static_cast<std::size_t>(first) - 1].node;
+    if (is_last_[static_cast<std::size_t>(node)] == 0) break;
+    --first;
+  }
+  return {first, steps.end};
+}
+
+template <int D>
+int BodyMatrix<D>::products(Range steps) const {
+  int products = 0;
+  for (int s = steps.begin; s < steps.end; ++s) {
+    const auto at = static_cast<std::size_t>(s);
+    products += products_of(steps_[at + 1].entries - steps_[at].entries);
+  }
+  return products;
 }
 
 template <int D>
@@ -138,52 +171,82 @@ void BodyMatrix<D>::clear(Range steps) {
     beside(entries_[static_cast<std::size_t>(e)].block) = Block{};
 }
 
-/// By LDL^T. @pre positive definite, as a body's own mass makes it; what rounding takes of a pivot
-/// beyond that is given back.
-template <int N>
-static void invert(const SquareBlock<N>& block, SquareBlock<N>& inverse) {
-  Wide lower[N][N];
-  Wide inverse_pivot[N];
-  for (int i = 0; i < N; ++i) {
-    Wide row[N];
-    Wide pivot = block.m[i][i];
-    for (int j = 0; j < i; ++j) {
-      row[j] = block.m[i][j];
-      for (int k = 0; k < j; ++k) row[j] -= row[k] * lower[j][k];
-      lower[i][j] = row[j] * inverse_pivot[j];
-      pivot -= row[j] * lower[i][j];
-    }
-    const Wide least = 1.0e-14 * block.m[i][i];
-    inverse_pivot[i] = 1.0 / (pivot > least ? pivot : least);
-  }
-  // The inverse of L, then its transpose times D^-1 times itself.
-  Wide unit[N][N];
-  for (int j = 0; j < N; ++j) {
-    unit[j][j] = 1.0;
-    for (int i = j + 1; i < N; ++i) {
-      unit[i][j] = 0.0;
-      for (int k = j; k < i; ++k) unit[i][j] -= lower[i][k] * unit[k][j];
-    }
-  }
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j <= i; ++j) {
-      Wide sum = 0.0;
-      for (int k = i; k < N; ++k) sum += unit[k][i] * inverse_pivot[k] * unit[k][j];
-      inverse.m[i][j] = sum;
-      inverse.m[j][i] = sum;
-    }
+template <int D>
+void BodyMatrix<D>::keep(Range steps) {
+  kept_diagonal_.resize(diagonal_.size());
+  kept_beside_.resize(beside_.size());
+  copy_blocks(steps, diagonal_, beside_, kept_diagonal_, kept_beside_);
 }
 
-/// c = a b, or a b^T.
+template <int D>
+void BodyMatrix<D>::restore(Range steps) {
+  copy_blocks(steps, kept_diagonal_, kept_beside_, diagonal_, beside_);
+}
+
+template <int D>
+void BodyMatrix<D>::copy_blocks(Range steps, const std::vector<Block>& from_diagonal,
+                                const std::vector<Block>& from_beside,
+                                std::vector<Block>& to_diagonal,
+                                std::vector<Block>& to_beside) const {
+  for (int s = steps.begin; s < steps.end; ++s) {
+    const Step& step = steps_[static_cast<std::size_t>(s)];
+    const auto node = static_cast<std::size_t>(step.node);
+    to_diagonal[node] = from_diagonal[node];
+    for (int e = step.entries; e < steps_[static_cast<std::size_t>(s) + 1].entries; ++e) {
+      const auto block = static_cast<std::size_t>(entries_[static_cast<std::size_t>(e)].block);
+      to_beside[block] = from_beside[block];
+    }
+  }
+}
+
+/// A = L D L^T. @pre positive definite, as a body's own mass makes it; what rounding takes of a
+/// pivot beyond that is given back.
 template <int N>
-static void multiply(const SquareBlock<N>& a, const SquareBlock<N>& b, SquareBlock<N>& c) {
+static void factor_pivot(const SquareBlock<N>& block, Pivot<N>& pivot) {
+  for (int i = 0; i < N; ++i) {
+    Wide row[N];
+    Wide left = block.m[i][i];
+    for (int j = 0; j < i; ++j) {
+      row[j] = block.m[i][j];
+      for (int k = 0; k < j; ++k) row[j] -= row[k] * pivot.lower[j][k];
+      pivot.lower[i][j] = row[j] * pivot.inverse[j];
+      left -= row[j] * pivot.lower[i][j];
+    }
+    const Wide least = 1.0e-14 * block.m[i][i];
+    pivot.inverse[i] = 1.0 / (left > least ? left : least);
+  }
+}
+
+/// Replaces b by b L^-T, and sets c = b D^-1 of that. Not by an inverse of the pivot, whose errors
+/// would hide the masses behind a stiff one.
+template <int N>
+static void divide(const Pivot<N>& pivot, SquareBlock<N>& b, SquareBlock<N>& c) {
   for (int i = 0; i < N; ++i)
     for (int j = 0; j < N; ++j) {
-      Wide sum = a.m[i][0] * b.m[0][j];
-      for (int k = 1; k < N; ++k) sum += a.m[i][k] * b.m[k][j];
-      c.m[i][j] = sum;
+      for (int k = 0; k < j; ++k) b.m[i][j] -= b.m[i][k] * pivot.lower[j][k];
+      c.m[i][j] = b.m[i][j] * pivot.inverse[j];
     }
 }
+/// b = c L^-1: with what `divide` has made, the block over the pivot.
+template <int N>
+static void divide_by_lower(const Pivot<N>& pivot, const SquareBlock<N>& c, SquareBlock<N>& b) {
+  for (int i = 0; i < N; ++i)
+    for (int j = N; j-- > 0;) {
+      b.m[i][j] = c.m[i][j];
+      for (int k = j + 1; k < N; ++k) b.m[i][j] -= b.m[i][k] * pivot.lower[k][j];
+    }
+}
+/// Replaces v by what the pivot answers to it.
+template <int N>
+static void divide(const Pivot<N>& pivot, Vec<N, Wide>& v) {
+  for (int i = 0; i < N; ++i)
+    for (int k = 0; k < i; ++k) v[i] -= pivot.lower[i][k] * v[k];
+  for (int i = N; i-- > 0;) {
+    v[i] *= pivot.inverse[i];
+    for (int k = i + 1; k < N; ++k) v[i] -= pivot.lower[k][i] * v[k];
+  }
+}
+
 /// c -= a b^T.
 template <int N>
 static void subtract_product(const SquareBlock<N>& a, const SquareBlock<N>& b, SquareBlock<N>& c) {
@@ -206,29 +269,26 @@ static void subtract_square(const SquareBlock<N>& a, const SquareBlock<N>& b, Sq
     }
 }
 template <int N>
-static void transpose(const SquareBlock<N>& from, SquareBlock<N>& to) {
+static void transpose(SquareBlock<N>& block) {
   for (int i = 0; i < N; ++i)
-    for (int j = 0; j < N; ++j) to.m[i][j] = from.m[j][i];
+    for (int j = 0; j < i; ++j) std::swap(block.m[i][j], block.m[j][i]);
 }
 
 template <int D>
 void BodyMatrix<D>::eliminate_numbers(const Step& step, const Step& next) {
-  const Block& pivot = inverse_[static_cast<std::size_t>(step.node)];
+  const Pivot<kFreedoms>& pivot = pivots_[static_cast<std::size_t>(step.node)];
   const auto count = static_cast<std::size_t>(next.entries - step.entries);
   if (column_.size() < count) column_.resize(count);
   std::size_t target = static_cast<std::size_t>(step.targets);
   for (std::size_t i = 0; i < count; ++i) {
     const Entry& entry = entries_[static_cast<std::size_t>(step.entries) + i];
     Block& block = beside(entry.block);
-    Block& whole = column_[i];
-    if (entry.transposed)
-      transpose(block, whole);
-    else
-      whole = block;
-    multiply(whole, pivot, block);
+    if (entry.transposed) transpose(block);
+    divide(pivot, block, column_[i]);
     for (std::size_t j = 0; j < i; ++j)
       subtract_product(block, column_[j], beside(targets_[target++]));
-    subtract_square(block, whole, diagonal(entry.node));
+    subtract_square(block, column_[i], diagonal(entry.node));
+    divide_by_lower(pivot, column_[i], block);
   }
 }
 
@@ -236,13 +296,19 @@ template <int D>
 void BodyMatrix<D>::factor(Range steps) {
   for (int s = steps.begin; s < steps.end; ++s) {
     const Step& step = steps_[static_cast<std::size_t>(s)];
-    invert(diagonal(step.node), inverse_[static_cast<std::size_t>(step.node)]);
+    factor_pivot(diagonal(step.node), pivots_[static_cast<std::size_t>(step.node)]);
     eliminate_numbers(step, steps_[static_cast<std::size_t>(s) + 1]);
   }
 }
 
 template <int D>
 void BodyMatrix<D>::solve(Range steps, std::span<Vector> by_node) const {
+  solve_lower(steps, by_node);
+  solve_upper(steps, by_node);
+}
+
+template <int D>
+void BodyMatrix<D>::solve_lower(Range steps, std::span<Vector> by_node) const {
   for (int s = steps.begin; s < steps.end; ++s) {
     const Step& step = steps_[static_cast<std::size_t>(s)];
     const Vector& from = by_node[static_cast<std::size_t>(step.node)];
@@ -254,15 +320,14 @@ void BodyMatrix<D>::solve(Range steps, std::span<Vector> by_node) const {
         for (int j = 0; j < kFreedoms; ++j) to[i] -= lower.m[i][j] * from[j];
     }
   }
+}
+
+template <int D>
+void BodyMatrix<D>::solve_upper(Range steps, std::span<Vector> by_node) const {
   for (int s = steps.end; s-- > steps.begin;) {
     const Step& step = steps_[static_cast<std::size_t>(s)];
-    const Block& pivot = inverse_[static_cast<std::size_t>(step.node)];
     Vector& to = by_node[static_cast<std::size_t>(step.node)];
-    const Vector load = to;
-    for (int i = 0; i < kFreedoms; ++i) {
-      to[i] = 0.0;
-      for (int j = 0; j < kFreedoms; ++j) to[i] += pivot.m[i][j] * load[j];
-    }
+    divide(pivots_[static_cast<std::size_t>(step.node)], to);
     for (int e = step.entries; e < steps_[static_cast<std::size_t>(s) + 1].entries; ++e) {
       const Entry& entry = entries_[static_cast<std::size_t>(e)];
       const Block& lower = beside_[static_cast<std::size_t>(entry.block)];

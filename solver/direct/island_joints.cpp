@@ -62,10 +62,9 @@ void IslandSolver<D>::foresee_turns(const Island& island, std::span<const Motion
   }
 }
 
-/// Adds to the solution what closes the joints, as far as it moves no body fast: the links of a
+/// Has the joints miss what closes them, too, as far as that moves no body fast: the links of a
 /// chain that is all but straight have to go a long way aside for a little of its length, and what
-/// they are thrown with stays in the world as energy.
-/// @pre `solution_` is of the matrix as it is factored.
+/// they are thrown with stays in the world as energy. @pre the matrix is factored.
 template <int D>
 void IslandSolver<D>::close_joints(Island& island) {
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
@@ -85,10 +84,6 @@ void IslandSolver<D>::close_joints(Island& island) {
   if (!island.closes) return;
   matrix.solve(island.steps, correction);
   const Wide share = share_of_correction(island, std::max(kMoved, kMovedShare * fastest));
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
-    const auto node = static_cast<std::size_t>(n);
-    for (int i = 0; i < kFreedoms; ++i) solution_[node][i] += share * correction[node][i];
-  }
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     for (int r = group.first; r < group.first + group.count; ++r) {

@@ -112,16 +112,12 @@ void IslandSolver<D>::weaken_guess(const Island& island, std::span<const BodyMas
   if (const Wide share = begin(island, masses); share < 1.0) keep_of_guess(island, share);
 }
 
-/// Which rows are equalities, by the natural map.
+/// Which rows of contacts are equalities, by the natural map.
 template <int D>
 void IslandSolver<D>::choose(const Island& island) {
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    if (!group.is_contact) {
-      for (int r = 0; r < group.count; ++r) row[r].holds = true;
-      continue;
-    }
     row[0].holds = row[0].impulse - row[0].mass * row[0].missing > 0.0;
     const bool rubs = row[0].holds && group.friction > 0.0;
     // What has not pushed yet has no bound to compare with: it may well stick.
@@ -135,14 +131,14 @@ template <int D>
 bool IslandSolver<D>::let_go(const Island& island) {
   constexpr Wide kSlack = 1.0001;
   bool any = false;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
     for (int r = 0; r < group.count; ++r) {
       row[r].answer = along<D>(group, row[r], solution_);
       row[r].change = row[r].holds ? -row[r].stiffness * (row[r].missing + row[r].answer) : 0.0;
     }
-    if (!group.is_contact || !row[0].holds) continue;
+    if (!row[0].holds) continue;
     const Wide normal = row[0].impulse + row[0].change;
     const Wide square = square_of_tangents(group, row);
     const Wide bound = kSlack * group.friction * std::max(normal, 0.0);
@@ -153,6 +149,19 @@ bool IslandSolver<D>::let_go(const Island& island) {
     any = any || normal < 0.0 || slides;
   }
   return any;
+}
+
+/// What comes of the solve for the joints.
+template <int D>
+void IslandSolver<D>::answer_joints(const Island& island) {
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      row.answer = along<D>(group, row, solution_);
+      row.change = -row.stiffness * (row.missing + row.answer);
+    }
+  }
 }
 
 /// The share of a correction, at most 1, with which no body and no point of contact moves faster
@@ -190,7 +199,8 @@ void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
     push<D>(group, row, -row.stiffness * row.closing, correction);
   }
   if (!island.corrects) return;
-  matrix.solve(island.steps, correction);
+  matrix.solve_lower(island.contact_steps, correction);  // Before them there is nothing.
+  matrix.solve_upper(island.steps, correction);
   const Wide share = share_of_correction(island, push_speed_max);
   for (int n = island.nodes.begin; n < island.nodes.end && share < 1.0; ++n)
     for (int i = 0; i < kFreedoms; ++i) correction[static_cast<std::size_t>(n)][i] *= share;
@@ -253,9 +263,17 @@ void IslandSolver<D>::forget_conflict(const Island& island) {
 }
 
 template <int D>
+void IslandSolver<D>::count_factor(int products, Island& island) {
+  ++work.factors;
+  work.products += static_cast<std::uint64_t>(products);
+  island.products_left -= products;
+}
+
+template <int D>
 Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masses,
                               std::span<const Motion<D>> motions, const IslandStep& step) {
   solution_.resize(body_of.size());
+  kept_.resize(body_of.size());
   const Wide share = begin(island, masses);
   foresee_turns(island, motions, step.h);
   if (share < 1.0) keep_of_guess(island, share);
@@ -264,15 +282,20 @@ Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masse
     if (round > 0 && island.products_left <= 0) break;
     choose(island);
     for (int pass = 0; pass <= kPasses; ++pass) {
-      assemble(island, masses, motions);
-      matrix.factor(island.steps);
-      matrix.solve(island.steps, solution_);
-      if (round == 0 && pass == 0) close_joints(island);
-      ++work.factors;
-      island.products_left -= island.products;
-      work.products += static_cast<std::uint64_t>(island.products);
+      const bool is_first = round == 0 && pass == 0;
+      if (is_first)
+        assemble_joints(island, masses);
+      else
+        matrix.restore(island.contact_steps);
+      assemble_contacts(island);
+      if (is_first) close_joints(island);
+      if (pass == 0) load_joints(island, motions);
+      solve_contacts(island);
+      count_factor(is_first ? island.products : island.contact_products, island);
       if (!let_go(island) || pass == kPasses) break;
     }
+    matrix.solve_upper({island.steps.begin, island.contact_steps.begin}, solution_);
+    answer_joints(island);
     taken = take(island, masses);
   }
   correct_positions(island, step.push_speed_max);

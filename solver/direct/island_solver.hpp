@@ -18,7 +18,7 @@ struct IslandRow {
   Wide closing;  ///< Speed at which its error of position is to go, m/s or rad/s: overlap below 0.
   Wide mass;     ///< Of the row alone, as the sweeps use it.
   Wide stiffness;  ///< Momentum per speed that it holds with: the island's, or its inertia.
-  bool holds;      ///< It is an equality of the present solve.
+  bool holds;      ///< Of a contact: it is an equality of the present solve. Joints' always are.
 };
 
 /// Rows that are bounded together: of a contact point its normal, then its tangents, whose length
@@ -86,9 +86,10 @@ enum class Solved {
 ///   (M + J^T W J) dv = -J^T W missing,  dlambda = -W (missing + J dv),
 /// proximal in dlambda, so that no load sags; what comes out is held to its bounds and taken as far
 /// as it lessens 1/2 lambda^T A lambda + b^T lambda. No step makes that grow, so it adds no energy,
-/// whatever the guess was. Sweeps go on from there.
-/// Source: Silcowitz-Hansen, Niebe, Erleben, "Projected Gauss-Seidel Subspace Minimization Method
-/// for Interactive Rigid Body Dynamics" (GRAPP 2010); tension: Tournier et al., "Stable Constrained
+/// whatever the guess was. Sweeps go on from there. Which contacts hold is found in passes, and
+/// only bodies that touch something, which are eliminated last, are factored anew in each. Source:
+/// Silcowitz-Hansen, Niebe, Erleben, "Projected Gauss-Seidel Subspace Minimization Method for
+/// Interactive Rigid Body Dynamics" (GRAPP 2010); tension: Tournier et al., "Stable Constrained
 /// Dynamics" (SIGGRAPH 2015).
 template <int D>
 class IslandSolver {
@@ -100,10 +101,12 @@ class IslandSolver {
   struct Island {
     Range nodes;
     Range steps;
+    Range contact_steps;  ///< The last ones of those: of nodes that touch something.
     Range groups;
     Range joints;  ///< The last ones of those.
     Range tensions;
     int products;                ///< Of blocks, that factoring takes.
+    int contact_products;        ///< Of those, in the steps of contacts.
     std::int64_t products_left;  ///< In this tick, before it is left to the sweeps.
     int bodies;                  ///< That move.
     int pairs;                   ///< Contacts and joints.
@@ -134,7 +137,9 @@ class IslandSolver {
   struct Plan {
     bool solvable = false;  ///< Else it would cost too much, and is left to the sweeps.
     Range steps{0, 0};
+    Range contact_steps{0, 0};
     int products = 0;
+    int contact_products = 0;
   };
 
   BodyMatrix<D> matrix;
@@ -142,6 +147,7 @@ class IslandSolver {
   std::vector<int> held_in;                ///< By held pair with groups, its island; else -1.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.
   std::vector<std::pair<int, int>> pairs_before;
+  int contact_pairs = 0;    ///< The first ones of those; joints follow.
   std::vector<int> beside;  ///< By pair of nodes: BodyMatrix::beside.
   std::vector<Plan> plans;  ///< By numbered island.
   std::vector<Island> islands;
@@ -187,8 +193,12 @@ class IslandSolver {
   void close_joints(Island& island);
   void choose(const Island& island);
   bool let_go(const Island& island);
-  void assemble(const Island& island, std::span<const BodyMass<D>> masses,
-                std::span<const Motion<D>> motions);
+  void count_factor(int products, Island& island);
+  void answer_joints(const Island& island);
+  void assemble_joints(const Island& island, std::span<const BodyMass<D>> masses);
+  void assemble_contacts(const Island& island);
+  void load_joints(const Island& island, std::span<const Motion<D>> motions);
+  void solve_contacts(const Island& island);
   void assemble_point(const IslandRows<D>& group, Wide stiffness);
   void assemble_row(const IslandRows<D>& group, const IslandRow<D>& row);
   bool hold_to_bounds(const Island& island, std::span<const BodyMass<D>> masses);
@@ -201,6 +211,7 @@ class IslandSolver {
   void forget_conflict(const Island& island);
 
   std::vector<Vector> solution_;  ///< By node.
+  std::vector<Vector> kept_;      ///< By node: what a solve of the contacts begins with.
   std::vector<Vector> momentum_;
 };
 

@@ -85,39 +85,89 @@ static Wide across(const Vec<3>& along, int i, int j) {
   return (i == j ? 1.0 : 0.0) - static_cast<Wide>(along[i]) * static_cast<Wide>(along[j]);
 }
 
-/// M + J^T W J and -J^T W missing of the rows that hold.
+/// M + J^T W J of the joints, which hold always, factored up to the bodies that touch something;
+/// what is left for these is kept.
 template <int D>
-void IslandSolver<D>::assemble(const Island& island, std::span<const BodyMass<D>> masses,
-                               std::span<const Motion<D>> motions) {
+void IslandSolver<D>::assemble_joints(const Island& island, std::span<const BodyMass<D>> masses) {
   matrix.clear(island.steps);
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
-    solution_[static_cast<std::size_t>(n)] = Vector::zero();
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     set_mass<D>(masses[body_of[static_cast<std::size_t>(n)]], matrix.diagonal(n));
-  }
   for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
     const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
-    const auto node = static_cast<std::size_t>(tension.node);
-    const Motion<D>& motion = motions[body_of[node]];
     for (int i = 0; i < Dim<D>::kSpin; ++i)
-      for (int j = 0; j < Dim<D>::kSpin; ++j) {
-        const Wide stiffness = static_cast<Wide>(tension.stiffness) * across(tension.along, i, j);
-        matrix.diagonal(tension.node).m[D + i][D + j] += stiffness;
-        solution_[node][D + i] -=
-            stiffness * (static_cast<Wide>(motion.spin[j]) + change[node][D + j]);
-      }
+      for (int j = 0; j < Dim<D>::kSpin; ++j)
+        matrix.diagonal(tension.node).m[D + i][D + j] +=
+            static_cast<Wide>(tension.stiffness) * across(tension.along, i, j);
   }
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r)
+      assemble_row(group, rows[static_cast<std::size_t>(r)]);
+  }
+  matrix.factor({island.steps.begin, island.contact_steps.begin});
+  matrix.keep(island.contact_steps);
+}
+
+/// Adds J^T W J of the contacts that hold and factors what `assemble_joints` has left.
+/// @pre the blocks are as that has kept them.
+template <int D>
+void IslandSolver<D>::assemble_contacts(const Island& island) {
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    for (int r = 0; r < group.count; ++r)
-      if (row[r].holds) push<D>(group, row[r], -row[r].stiffness * row[r].missing, solution_);
-    if (group.is_contact && group.count > 1 && row[1].holds) {
+    if (group.count > 1 && row[1].holds) {
       assemble_point(group, row[0].stiffness);
       continue;
     }
     for (int r = 0; r < group.count; ++r)
       if (row[r].holds) assemble_row(group, row[r]);
   }
+  matrix.factor(island.contact_steps);
+}
+
+/// -J^T W missing of joints and tensions, brought forward to the bodies that touch something.
+/// @pre assemble_joints.
+template <int D>
+void IslandSolver<D>::load_joints(const Island& island, std::span<const Motion<D>> motions) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    solution_[static_cast<std::size_t>(n)] = Vector::zero();
+  for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
+    const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
+    const auto node = static_cast<std::size_t>(tension.node);
+    const Motion<D>& motion = motions[body_of[node]];
+    for (int i = 0; i < Dim<D>::kSpin; ++i)
+      for (int j = 0; j < Dim<D>::kSpin; ++j)
+        solution_[node][D + i] -= static_cast<Wide>(tension.stiffness) *
+                                  across(tension.along, i, j) *
+                                  (static_cast<Wide>(motion.spin[j]) + change[node][D + j]);
+  }
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      push<D>(group, row, -row.stiffness * row.missing, solution_);
+    }
+  }
+  matrix.solve_lower({island.steps.begin, island.contact_steps.begin}, solution_);
+  const auto begin = solution_.begin();
+  std::copy(begin + island.nodes.begin, begin + island.nodes.end,
+            kept_.begin() + island.nodes.begin);
+}
+
+/// Solves for the bodies that touch something, with the contacts that hold. @pre load_joints.
+template <int D>
+void IslandSolver<D>::solve_contacts(const Island& island) {
+  const auto begin = kept_.begin();
+  std::copy(begin + island.nodes.begin, begin + island.nodes.end,
+            solution_.begin() + island.nodes.begin);
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    for (int r = group.first; r < group.first + group.count; ++r) {
+      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+      if (row.holds) push<D>(group, row, -row.stiffness * row.missing, solution_);
+    }
+  }
+  matrix.solve(island.contact_steps, solution_);
 }
 
 /// Adds J^T W J of a contact point that sticks: all its rows at once.
@@ -225,11 +275,15 @@ Wide IslandSolver<D>::take(const Island& island, std::span<const BodyMass<D>> ma
   return step;
 }
 
-template void IslandSolver<2>::assemble(const Island&, std::span<const BodyMass<2>>,
-                                        std::span<const Motion<2>>);
+template void IslandSolver<2>::assemble_joints(const Island&, std::span<const BodyMass<2>>);
+template void IslandSolver<2>::assemble_contacts(const Island&);
+template void IslandSolver<2>::load_joints(const Island&, std::span<const Motion<2>>);
+template void IslandSolver<2>::solve_contacts(const Island&);
 template Wide IslandSolver<2>::take(const Island&, std::span<const BodyMass<2>>);
-template void IslandSolver<3>::assemble(const Island&, std::span<const BodyMass<3>>,
-                                        std::span<const Motion<3>>);
+template void IslandSolver<3>::assemble_joints(const Island&, std::span<const BodyMass<3>>);
+template void IslandSolver<3>::assemble_contacts(const Island&);
+template void IslandSolver<3>::load_joints(const Island&, std::span<const Motion<3>>);
+template void IslandSolver<3>::solve_contacts(const Island&);
 template Wide IslandSolver<3>::take(const Island&, std::span<const BodyMass<3>>);
 
 }  // namespace cycloid::solver

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "solver/stages/island_rows.hpp"
 #include "solver/stages/stages.hpp"
@@ -161,31 +163,41 @@ template <int D>
 static bool list_pairs(IslandSolver<D>& solver) {
   std::swap(solver.pairs, solver.pairs_before);
   solver.pairs.clear();
+  const int contacts_before = std::exchange(solver.contact_pairs, 0);
   for (const HeldPair& pair : solver.held) {
     if (!solver.is_numbered(pair)) continue;
     const int a = solver.node_of[pair.a];
     const int b = solver.node_of[pair.b];
     solver.pairs.push_back({a, b});
+    if (pair.lane >= 0) ++solver.contact_pairs;
   }
   solver.pairs_before.reserve(solver.pairs.size());
-  return solver.pairs == solver.pairs_before;
+  return solver.pairs == solver.pairs_before && solver.contact_pairs == contacts_before;
 }
 
-/// Joins the nodes and plans each island.
+/// Joins the nodes and plans each island. Those that touch something come last: a solve finds out
+/// which contacts hold in a few passes, and joints always do.
 template <int D>
 static void plan_islands(IslandSolver<D>& solver) {
+  const auto contacts = static_cast<std::size_t>(solver.contact_pairs);
   solver.matrix.begin(static_cast<int>(solver.body_of.size()));
   solver.beside.clear();
   for (const auto& [a, b] : solver.pairs)
     solver.beside.push_back(a >= 0 && b >= 0 ? solver.matrix.join(a, b) : -1);
+  for (const auto& [a, b] : std::span(solver.pairs).first(contacts)) {
+    if (a >= 0) solver.matrix.put_last(a);
+    if (b >= 0) solver.matrix.put_last(b);
+  }
   solver.plans.clear();
   for (const auto& island : solver.islands) {
     if (!island.numbered) continue;
     auto& plan = solver.plans.emplace_back();
-    const std::uint64_t before = solver.matrix.products();
     plan.solvable =
         solver.matrix.analyse(island.nodes, kProductsPerPair * island.pairs, plan.steps);
-    plan.products = static_cast<int>(solver.matrix.products() - before);
+    if (!plan.solvable) continue;
+    plan.contact_steps = solver.matrix.last_of(plan.steps);
+    plan.products = solver.matrix.products(plan.steps);
+    plan.contact_products = solver.matrix.products(plan.contact_steps);
   }
 }
 
@@ -196,7 +208,9 @@ static void follow_plans(IslandSolver<D>& solver) {
     island.solvable = false;
     if (!island.numbered) continue;
     island.steps = plan->steps;
+    island.contact_steps = plan->contact_steps;
     island.products = plan->products;
+    island.contact_products = plan->contact_products;
     island.solvable = plan->solvable;
     ++plan;
   }

@@ -1,8 +1,10 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <string>
 #include <vector>
 
+#include "bench/trials/course.hpp"
 #include "bench/trials/judges.hpp"
 #include "solver/validate.hpp"
 #include "tests/experiments/begin_trial.hpp"
@@ -99,6 +101,16 @@ TEST(LoadedIslands, HoldWhatSoftSweepsLetFall) {
     EXPECT_LT(held.value, claim.most) << claim.trial;
     const Outcome swept = judge(trial_named(claim.trial), Tuning::soft_step());
     EXPECT_TRUE(!swept.ended || swept.value > claim.most) << claim.trial;
+  }
+}
+
+// Their load would tell only once swept joints have stretched the chain to 3 mm in each.
+TEST(LoadedIslands, ChainsOfUnequalMassesAreHeldFromTheFirstTick) {
+  for (const char* name :
+       {"trial-ball-and-chain", "trial-chain-100", "trial-chain-1000", "trial-chain-50000"}) {
+    const Course course = run_trial(trial_named(name), Tuning::soft_loaded(), nullptr);
+    EXPECT_TRUE(course.ended) << name;
+    EXPECT_LT(*std::max_element(course.gaps_m.begin(), course.gaps_m.end()), 0.0005) << name;
   }
 }
 

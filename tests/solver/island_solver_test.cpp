@@ -16,9 +16,11 @@ struct BodyOnGround {
 
   BodyOnGround() {
     solver.matrix.begin(1);
+    solver.matrix.put_last(0);
     EXPECT_TRUE(solver.matrix.analyse({0, 1}, 100, island.steps));
     island.nodes = {0, 1};
-    island.products = 1;
+    island.contact_steps = solver.matrix.last_of(island.steps);
+    island.products = island.contact_products = 1;
     island.products_left = 1000;
     solver.body_of = {0};
     solver.change.resize(1);
@@ -29,6 +31,7 @@ struct BodyOnGround {
       add_row(1.0f, 0.0f);
     }
     island.groups = {0, 2};
+    island.joints = {2, 2};
   }
   void add_row(float x, float y) {
     IslandRow<2> row{};
