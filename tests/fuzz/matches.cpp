@@ -10,8 +10,12 @@ namespace cycloid::fuzz {
 static bool is_cheap(const scenes::Scene& scene) {
   const solver::Tuning& tuning = scene.tuning;
   const std::uint32_t sweeps = tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps;
+  std::uint64_t particles = 0;
+  for (const scenes::Cloth& cloth : scene.cloths)
+    particles += std::uint64_t{cloth.columns} * cloth.rows;
   return tuning.substeps * sweeps <= 256 &&
-         tuning.particle_substeps * tuning.particle_sweeps <= 256 && scene.bodies.size() < 1000;
+         tuning.particle_substeps * tuning.particle_sweeps <= 256 && scene.bodies.size() < 1000 &&
+         particles < 5000;
 }
 
 /// What `check` finds no mistake in has to run, and its encoding has to be taken.
