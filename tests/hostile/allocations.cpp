@@ -1,16 +1,27 @@
 #include "tests/hostile/allocations.hpp"
 
-#include <algorithm>
+#include <atomic>
 #include <cstdlib>
 #include <new>
 
 namespace cycloid::hostile {
 namespace {
 
-// Plain numbers: the tests that count use one thread.
-Allocations counted;
-std::size_t live_at_reset = 0;
-std::size_t live_now = 0;
+// Workers of a world allocate at the same time.
+std::atomic<std::size_t> total = 0;
+std::atomic<std::size_t> largest = 0;
+std::atomic<std::size_t> peak = 0;
+std::atomic<std::size_t> live_now = 0;
+std::atomic<std::size_t> live_at_reset = 0;
+
+void raise(std::atomic<std::size_t>& most, std::size_t to) {
+  for (std::size_t now = most; now < to && !most.compare_exchange_weak(now, to);) {
+  }
+}
+
+std::size_t since_reset(std::size_t live) {
+  return live > live_at_reset ? live - live_at_reset : 0;
+}
 
 /// In front of every block, as large as the strictest alignment of ordinary allocations.
 constexpr std::size_t kHeadBytes = alignof(std::max_align_t);
@@ -19,11 +30,9 @@ void* allocate(std::size_t bytes) {
   void* block = std::malloc(bytes + kHeadBytes);
   if (block == nullptr) throw std::bad_alloc();
   *static_cast<std::size_t*>(block) = bytes;
-  live_now += bytes;
-  counted.total_bytes += bytes;
-  counted.largest_bytes = std::max(counted.largest_bytes, bytes);
-  if (live_now > live_at_reset)
-    counted.peak_bytes = std::max(counted.peak_bytes, live_now - live_at_reset);
+  total += bytes;
+  raise(largest, bytes);
+  raise(peak, since_reset(live_now += bytes));
   return static_cast<std::byte*>(block) + kHeadBytes;
 }
 
@@ -37,14 +46,17 @@ void release(void* pointer) {
 }  // namespace
 
 void reset_allocations() {
-  counted = {};
-  live_at_reset = live_now;
+  total = largest = peak = 0;
+  live_at_reset = live_now.load();
 }
 
 Allocations allocations() {
-  Allocations now = counted;
-  now.live_bytes = live_now > live_at_reset ? live_now - live_at_reset : 0;
-  return now;
+  Allocations counted;
+  counted.total_bytes = total;
+  counted.largest_bytes = largest;
+  counted.peak_bytes = peak;
+  counted.live_bytes = since_reset(live_now);
+  return counted;
 }
 
 }  // namespace cycloid::hostile
