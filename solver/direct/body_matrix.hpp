@@ -2,7 +2,6 @@
 
 #include <cstdint>
 #include <span>
-#include <utility>
 #include <vector>
 
 #include "solver/dim.hpp"
@@ -101,7 +100,10 @@ class BodyMatrix {
     int rank;   ///< Its degree, behind all others if it was put last.
     int since;  ///< The step that gave it that.
     int node;
-    auto operator<=>(const Waiting&) const = default;
+    bool operator<(const Waiting& other) const {
+      if (rank != other.rank) return rank < other.rank;
+      return since != other.since ? since < other.since : node < other.node;
+    }
   };
 
   int find(int a, int b) const;

@@ -87,9 +87,10 @@ enum class Solved {
 /// proximal in dlambda, so that no load sags; what comes out is held to its bounds and taken as far
 /// as it lessens 1/2 lambda^T A lambda + b^T lambda. No step makes that grow, so it adds no energy,
 /// whatever the guess was. Sweeps go on from there. Which contacts hold is found in passes, and
-/// only bodies that touch something, which are eliminated last, are factored anew in each. Source:
-/// Silcowitz-Hansen, Niebe, Erleben, "Projected Gauss-Seidel Subspace Minimization Method for
-/// Interactive Rigid Body Dynamics" (GRAPP 2010); tension: Tournier et al., "Stable Constrained
+/// only bodies that touch something, which are eliminated last, are factored anew in each.
+///
+/// Source: Silcowitz-Hansen, Niebe, Erleben, "Projected Gauss-Seidel Subspace Minimization Method
+/// for Interactive Rigid Body Dynamics" (GRAPP 2010); tension: Tournier et al., "Stable Constrained
 /// Dynamics" (SIGGRAPH 2015).
 template <int D>
 class IslandSolver {
