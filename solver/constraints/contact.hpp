@@ -44,6 +44,7 @@ struct ContactBlock {
   LaneIndices<W> contact;
   LaneBits moves_a;  ///< Lanes whose body a has mass.
   LaneBits moves_b;
+  LaneBits has_point[Dim<D>::kManifoldPoints];  ///< By point, the lanes that have it.
   LaneBits loaded;   ///< Of islands: lanes whose load a soft contact would give way to (find_load).
   LaneBits misses;   ///< Of islands (contact_rest.hpp): lanes that the warm start left in motion,
   LaneBits stirs;    ///< or not quite at rest.

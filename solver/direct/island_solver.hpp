@@ -45,8 +45,6 @@ struct HeldPair {
   int points;
   bool a_moves;
   bool b_moves;
-
-  bool operator==(const HeldPair&) const = default;
 };
 
 /// Torque by which the force of a joint answers to a turn of a body, as an impulse: what makes it
@@ -144,6 +142,7 @@ class IslandSolver {
   };
 
   BodyMatrix<D> matrix;
+  std::vector<std::uint32_t> held_words;   ///< What `held` was made of.
   std::vector<HeldPair> held;              ///< Contacts in the order of the colouring, then joints.
   std::vector<int> held_in;                ///< By held pair with groups, its island; else -1.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.

@@ -20,43 +20,6 @@ static constexpr int kProductsPerPairAndTick = 960;
 static constexpr float kThinPairsPerBody = 1.25f;
 static constexpr int kThinPairsMore = 2;
 
-template <int D>
-static bool moves(const StepScratch<D>& scratch, std::uint32_t slot) {
-  return scratch.masses[slot].inverse_mass > 0.0f && scratch.awake[slot] != 0;
-}
-
-/// Takes down what holds: every contact in the order of the colouring, which is the same whatever
-/// the lanes, then every joint that does not yield. @returns whether it is what held before, in a
-/// world of as many slots, so that all that was made of it still stands.
-template <int D, int W>
-static bool list_held(StepScratch<D>& scratch) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  bool same = solver.island_of.size() == scratch.masses.size();
-  std::size_t count = 0;
-  const auto add = [&](std::uint32_t a, std::uint32_t b, int place, int lane, int points) {
-    const HeldPair pair{a, b, place, lane, points, moves(scratch, a), moves(scratch, b)};
-    if (count == solver.held.size()) solver.held.emplace_back();
-    same = same && solver.held[count] == pair;
-    solver.held[count++] = pair;
-  };
-  const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  for (std::size_t i = 0; i < blocks.size(); ++i) {
-    const ContactBlock<D, W>& block = blocks[i];
-    for (int lane = 0; lane < kLaneCount<W>; ++lane) {
-      if (block.contact[lane] == kNone) continue;
-      const auto points = static_cast<int>(scratch.contacts[block.contact[lane]].point_count);
-      add(block.body_a[lane], block.body_b[lane], static_cast<int>(i), lane, points);
-    }
-  }
-  for (std::size_t i = 0; i < scratch.joint_rows.size(); ++i) {
-    const JointRow<D>& row = scratch.joint_rows[i];
-    if (is_held(row)) add(row.body_a, row.body_b, static_cast<int>(i), -1, 1);
-  }
-  same = same && count == solver.held.size();
-  solver.held.resize(count);
-  return same;
-}
-
 /// Islands in the order of their lowest slots.
 template <int D>
 static void find_islands(StepScratch<D>& scratch) {
@@ -128,6 +91,7 @@ static bool want_islands(IslandSolver<D>& solver) {
     const int at = solver.island_of[slot];
     if (at < 0) continue;
     auto& island = solver.islands[static_cast<std::size_t>(at)];
+    if (island.wanted) continue;
     island.wanted = is_thin<D>(island) || may_be_weighed<D>(island);
     any = any || island.wanted;
   }
@@ -235,16 +199,20 @@ static void plan_wanted(StepScratch<D>& scratch) {
 }
 
 /// What is each island's own in this tick: whether it is solved, its greatest mass and inertia, and
-/// how much it may cost.
+/// how much it may cost. @returns whether any is solved or weighed.
 template <int D>
-static void begin_islands(StepScratch<D>& scratch) {
+static bool begin_islands(StepScratch<D>& scratch) {
+  bool any = false;
   for (auto& island : scratch.islands_solved.islands) {
     island.taken = island.wanted && island.solvable;
     island.weighed = island.wanted && !island.solvable && may_be_weighed<D>(island);
     island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
     island.swept = island.stirred = island.corrects = false;
-    if (island.taken || island.weighed) find_heaviest(scratch, island);
+    if (!island.taken && !island.weighed) continue;
+    find_heaviest(scratch, island);
+    any = true;
   }
+  return any;
 }
 
 /// Forgets what is kept of islands where the tuning asks for other islands than it was made for.
@@ -253,9 +221,8 @@ static void begin_grouping(const Tuning& tuning, IslandSolver<D>& solver) {
   const bool only_thin = tuning.contact_block == ContactBlockRows::kLoadedIsland;
   if (solver.only_thin == only_thin) return;
   solver.only_thin = only_thin;
-  solver.held.clear();
+  solver.held_words.clear();
   solver.pairs.clear();
-  solver.island_of.clear();
 }
 
 /// Sorts what touches or is jointed into islands and plans how each that is wanted is solved at
@@ -275,7 +242,7 @@ void group_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   solver.acts = want_islands(solver);
   if (!solver.acts) return;
   plan_wanted(scratch);
-  begin_islands(scratch);
+  solver.acts = begin_islands(scratch);
 }
 
 template <int D, int W>

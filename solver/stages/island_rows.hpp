@@ -5,6 +5,12 @@
 
 namespace cycloid::solver {
 
+/// Takes down what holds: every contact in the order of the colouring, which is the same whatever
+/// the lanes, then every joint that does not yield. @returns whether it is what held before, in a
+/// world of as many slots, so that all that was made of it still stands.
+template <int D, int W>
+bool list_held(StepScratch<D>& scratch);
+
 /// Lists the groups of rows of what is solvable, island after island, and of what is only weighed
 /// just the joints. @pre islands are planned.
 template <int D>

@@ -127,6 +127,7 @@ static void set_contact(const StepContext<D>& context, const WorldState<D>& stat
   for (std::uint32_t p = 0; p < contact.point_count; ++p) {
     const PointInput<D> in{manifold.points[p], contact.points[p], context.tuning.warm_starting};
     set_point<D, W>(block.points[p], lane, in);
+    block.has_point[p] |= LaneBits{1} << lane;
   }
 }
 
