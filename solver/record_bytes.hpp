@@ -163,45 +163,29 @@ constexpr RecordWords<R> float_words() {
   return words;
 }
 
-/// Four records' worth of `float_words`, so that it is whole fours of words.
+/// How many records a period of `kFloatWords` has: whole vectors of numbers, of 8 at the widest.
+inline constexpr std::size_t kRecordsPerPeriod = 8;
+
+/// `float_words` of a period of records, one after the other.
 template <class R>
 inline constexpr auto kFloatWords = [] {
-  std::array<std::uint32_t, 4 * kRecordWords<R>> words{};
+  std::array<std::uint32_t, kRecordsPerPeriod * kRecordWords<R>> words{};
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = float_words<R>()[i % kRecordWords<R>];
   return words;
 }();
 
-/// `canonical_bits_of` on four numbers at once, where `floats` has ones; the others stay.
-/// Integers throughout, so that no target's floating point takes part.
-inline void make_canonical(std::byte* words, const std::uint32_t* floats) {
-  typedef std::int32_t Words __attribute__((vector_size(16)));
-  Words word;
-  Words is_float;
-  std::memcpy(&word, words, sizeof word);
-  std::memcpy(&is_float, floats, sizeof is_float);
-  const Words magnitude = word & 0x7fffffff;
-  const Words is_nan = (magnitude > 0x7f800000) & is_float;
-  const Words is_zero = (magnitude == 0) & is_float;
-  word = (word & ~(is_nan | is_zero)) | (is_nan & 0x7fc00000);
-  std::memcpy(words, &word, sizeof word);
-}
-
-/// Whether `make_canonical` would change no number of all these, whole fours, and none is a NaN.
-inline bool is_canonical(std::span<const std::byte> words, const std::uint32_t* floats) {
-  typedef std::uint32_t Words __attribute__((vector_size(16)));
-  constexpr std::uint32_t kSign = 0x80000000u;
-  Words found{};
-  for (std::size_t at = 0; at < words.size(); at += sizeof(Words)) {
-    Words word;
-    Words is_float;
-    std::memcpy(&word, words.data() + at, sizeof word);
-    std::memcpy(&is_float, floats + at / sizeof(std::uint32_t), sizeof is_float);
-    // The sum has its highest bit where the magnitude is that of a NaN, above 0x7f800000.
-    const Words nan = (word & ~kSign) + 0x007fffffu;
-    const Words negative_zero = std::bit_cast<Words>(word == kSign);
-    found |= (nan | negative_zero) & is_float;
+/// `canonical_bits_of` of the floats among so many numbers in memory; the others stay. Integers
+/// throughout, so that no target's floating point takes part.
+inline void make_canonical(std::byte* numbers, std::size_t count, const std::uint32_t* floats) {
+  for (std::size_t i = 0; i < count; ++i) {
+    std::byte* at = numbers + i * sizeof(std::uint32_t);
+    std::uint32_t word;
+    std::memcpy(&word, at, sizeof word);
+    const std::uint32_t magnitude = word & 0x7fffffffu;
+    const std::uint32_t of_float = magnitude > 0x7f800000u ? 0x7fc00000u : word;
+    word = floats[i] == 0 ? word : magnitude == 0 ? 0u : of_float;
+    std::memcpy(at, &word, sizeof word);
   }
-  return ((found[0] | found[1] | found[2] | found[3]) & kSign) == 0;
 }
 
 }  // namespace cycloid::solver

@@ -1,15 +1,13 @@
 #pragma once
 
-#ifndef XXH_INLINE_ALL
-#define XXH_INLINE_ALL
-#endif
-#include <xxhash.h>
-
+#include <algorithm>
 #include <array>
+#include <cstring>
 #include <span>
 
 #include "solver/bytes.hpp"
 #include "solver/record_bytes.hpp"
+#include "solver/tracing/digest_kernels.hpp"
 
 namespace cycloid::solver {
 
@@ -29,14 +27,13 @@ class DigestWriter {
   /// As each number of each record.
   template <class R>
   void records(std::span<const R> records) {
-    if constexpr (kCopiesRecords<R>) {
-      // In one run the order of numbers is that of memory, on machines of either byte order.
-      if constexpr (kWordRuns<R>.count == 1 && float_words<R>() == RecordWords<R>{})
-        return raw(std::as_bytes(records));
-      if constexpr (kWordRuns<R>.count == 1) records = as_in_memory(records);
-      for (; records.size() >= 4; records = records.subspan(4)) four(records.first(4));
-    }
-    for (const R& record : records) visit_words(record, *this);
+    // In one run the order of numbers is that of memory.
+    if constexpr (kCopiesRecords<R> && kWordRuns<R>.count == 1)
+      in_memory(records);
+    else if constexpr (kCopiesRecords<R>)
+      while (!records.empty()) records = by_copy(records);
+    else
+      for (const R& record : records) visit_words(record, *this);
   }
 
   std::uint64_t digest() {
@@ -46,47 +43,54 @@ class DigestWriter {
 
  private:
   void raw(std::span<const std::byte> bytes) {
-    flush();
-    if (!bytes.empty()) XXH3_64bits_update(&state_, bytes.data(), bytes.size());
-  }
-
-  /// All whole fours of records, from memory where they are canonical there, as most are: to look
-  /// is cheaper than to copy. @returns the rest.
-  template <class R>
-  std::span<const R> as_in_memory(std::span<const R> records) {
-    while (records.size() >= 4) {
-      std::size_t canonical = 0;
-      while (records.size() - canonical >= 4 &&
-             is_canonical(std::as_bytes(records.subspan(canonical, 4)), kFloatWords<R>.data()))
-        canonical += 4;
-      raw(std::as_bytes(records.first(canonical)));
-      records = records.subspan(canonical);
-      if (records.size() < 4) break;
-      four(records.first(4));
-      records = records.subspan(4);
+    if (bytes.size() <= kFewBytes) {
+      if (used_ + bytes.size() > buffer_.size()) flush();
+      if (!bytes.empty()) std::memcpy(buffer_.data() + used_, bytes.data(), bytes.size());
+      used_ += bytes.size();
+      return;
     }
-    return records;
+    flush();
+    functions_.update(state_, bytes.data(), bytes.size());
   }
 
+  /// From memory where records are canonical there, as most are: to look is cheaper than to copy.
   template <class R>
-  void four(std::span<const R> records) {
-    constexpr std::size_t kFourBytes = 4 * sizeof(R);
-    static_assert(kFourBytes <= kBufferBytes);
-    if (used_ + kFourBytes > buffer_.size()) flush();
+  void in_memory(std::span<const R> records) {
+    if constexpr (float_words<R>() == RecordWords<R>{}) return raw(std::as_bytes(records));
+    while (!records.empty()) {
+      const auto bytes = std::as_bytes(records);
+      const std::size_t canonical = functions_.canonical_bytes(
+          bytes.data(), bytes.size(), kFloatWords<R>.data(), sizeof kFloatWords<R>);
+      raw(bytes.first(canonical));
+      records = records.subspan(canonical / sizeof(R));
+      if (!records.empty()) records = by_copy(records);
+    }
+  }
+
+  /// A period of records, or what there is of one. @returns the rest.
+  template <class R>
+  std::span<const R> by_copy(std::span<const R> records) {
+    static_assert(sizeof kFloatWords<R> <= kBufferBytes);
+    const auto some = records.first(std::min(records.size(), kRecordsPerPeriod));
+    if (used_ + some.size_bytes() > buffer_.size()) flush();
     std::byte* at = buffer_.data() + used_;
-    write_by_copy(records, at);
-    for (std::size_t i = 0; i < kFloatWords<R>.size(); i += 4)
-      make_canonical(at + 4 * i, kFloatWords<R>.data() + i);
-    used_ += kFourBytes;
+    write_by_copy(some, at);
+    make_canonical(at, some.size() * kRecordWords<R>, kFloatWords<R>.data());
+    used_ += some.size_bytes();
+    return records.subspan(some.size());
   }
 
   void flush() {
-    XXH3_64bits_update(&state_, buffer_.data(), used_);
+    functions_.update(state_, buffer_.data(), used_);
     used_ = 0;
   }
 
-  XXH3_state_t state_;
   static constexpr std::size_t kBufferBytes = 4096;
+  /// What is copied rather than begin an update of XXH3.
+  static constexpr std::size_t kFewBytes = 512;
+
+  DigestFunctions functions_ = digest_functions();
+  XXH3_state_t state_;
   std::array<std::byte, kBufferBytes> buffer_;
   std::size_t used_ = 0;
 };
