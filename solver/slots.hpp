@@ -17,6 +17,9 @@ bool has_room(const Slots& slots, const std::vector<std::uint32_t>& free, std::s
 template <class Record>
 std::uint32_t take_slot(std::vector<Record>& slots, std::vector<std::uint32_t>& free) {
   if (free.empty()) {
+    // By a quarter, for a server holds hundreds of worlds, and of each what no record takes is lost.
+    const std::size_t more = slots.size() / 4;
+    if (slots.size() == slots.capacity()) slots.reserve(slots.size() + (more < 8 ? 8 : more));
     slots.push_back(Record{});
     return static_cast<std::uint32_t>(slots.size() - 1);
   }

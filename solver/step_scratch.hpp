@@ -72,7 +72,10 @@ struct KeptByWorld {
 template <int D>
 struct StepScratch : KeptByWorld<D> {
   std::vector<typename BoundsTree<D>::Leaf> leaves;
-  std::vector<ShapePair> pairs;             ///< Sorted by key.
+  std::vector<std::uint32_t> looking;  ///< Shapes that look for their candidates anew.
+  std::vector<std::vector<ShapePair>> found_candidates;  ///< By chunk of those.
+  std::vector<ShapePair> fresh_candidates;               ///< All of them, sorted by key.
+  std::vector<ShapePair> pairs;                          ///< Sorted by key.
   std::vector<Manifold<D>> pair_manifolds;  ///< Of a batch of pairs; empty where shapes are apart.
 
   std::vector<Contact<D>> contacts;    ///< Becomes the state's when the step commits.

@@ -45,13 +45,10 @@ struct PairCache {
   std::vector<std::uint8_t> active;    ///< By shape: its body takes part in this tick.
   std::vector<std::uint8_t> is_still;  ///< By shape: its box was made while nothing moved it.
   std::vector<std::uint8_t> looks;     ///< By shape: it is looked up in this tick.
-  std::vector<std::uint32_t> looking;  ///< The shapes that are.
   std::vector<std::uint32_t> seen;     ///< By shape: boxes its last look met.
   std::uint64_t seen_sum = 0;
   BoxSet<D> fat;
   std::vector<ShapePair> candidates;          ///< Sorted by key.
-  std::vector<ShapePair> fresh;               ///< Of those looked up in this tick.
-  std::vector<std::vector<ShapePair>> found;  ///< By chunk of `looking`.
   std::vector<std::uint64_t> jointed_bodies;  ///< Sorted pairs that do not collide.
   std::vector<std::uint32_t> forgotten;       ///< Shapes whose box or filter was changed.
   bool is_known = false;                      ///< Otherwise all but the statics is made anew.

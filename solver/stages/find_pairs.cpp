@@ -77,7 +77,8 @@ static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
 
 /// Of shapes that were changed by a call, or are gone, nothing is known any more.
 template <int D>
-static void forget_changed(const WorldState<D>& state, PairCache<D>& cache) {
+static void forget_changed(const WorldState<D>& state, StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
   const std::size_t count = state.shapes.size();
   cache.boxes.resize(count);
   cache.active.resize(count, 0);
@@ -90,7 +91,7 @@ static void forget_changed(const WorldState<D>& state, PairCache<D>& cache) {
     cache.active[shape] = 0;
     cache.is_still[shape] = 0;
     cache.looks[shape] = 1;
-    cache.looking.push_back(shape);
+    scratch.looking.push_back(shape);
   }
   cache.forgotten.clear();
   list_jointed_bodies(state, cache);
@@ -124,7 +125,7 @@ static void move_boxes(const StepContext<D>& context, const WorldState<D>& state
       cache.fat.put(s, fattened(cache.boxes[s], context.tick_s * body.velocity));
       if (cache.looks[s] != 0) continue;
       cache.looks[s] = 1;
-      cache.looking.push_back(s);
+      scratch.looking.push_back(s);
     }
   }
   cache.fat.settle();
@@ -162,18 +163,18 @@ template <int D>
 static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tally,
                     StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.pair_cache;
-  const int count = static_cast<int>(cache.looking.size());
+  const int count = static_cast<int>(scratch.looking.size());
   const int chunks = (count + kPairGrain - 1) / kPairGrain;
-  if (cache.found.size() < static_cast<std::size_t>(chunks))
-    cache.found.resize(static_cast<std::size_t>(chunks));
-  for (const std::uint32_t shape : cache.looking) cache.seen_sum -= cache.seen[shape];
+  if (scratch.found_candidates.size() < static_cast<std::size_t>(chunks))
+    scratch.found_candidates.resize(static_cast<std::size_t>(chunks));
+  for (const std::uint32_t shape : scratch.looking) cache.seen_sum -= cache.seen[shape];
   tally.candidates.add(cache.seen_sum);
   workers.parallel_for(count, kPairGrain, [&](Range range) {
-    auto& found = cache.found[static_cast<std::size_t>(range.begin / kPairGrain)];
+    auto& found = scratch.found_candidates[static_cast<std::size_t>(range.begin / kPairGrain)];
     found.clear();
     for (int i = range.begin; i < range.end; ++i) {
       if (tally.is_over()) return;
-      const std::uint32_t shape = cache.looking[static_cast<std::size_t>(i)];
+      const std::uint32_t shape = scratch.looking[static_cast<std::size_t>(i)];
       const std::size_t before = found.size();
       cache.seen[shape] = cache.fat.contains(shape) ? look(state, scratch, shape, found) : 0;
       tally.pairs.add(found.size() - before);
@@ -181,14 +182,14 @@ static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tal
     }
   });
   if (tally.is_over()) return false;
-  for (const std::uint32_t shape : cache.looking) cache.seen_sum += cache.seen[shape];
-  cache.fresh.clear();
+  for (const std::uint32_t shape : scratch.looking) cache.seen_sum += cache.seen[shape];
+  scratch.fresh_candidates.clear();
   for (int i = 0; i < chunks; ++i) {
-    const auto& found = cache.found[static_cast<std::size_t>(i)];
-    cache.fresh.insert(cache.fresh.end(), found.begin(), found.end());
+    const auto& found = scratch.found_candidates[static_cast<std::size_t>(i)];
+    scratch.fresh_candidates.insert(scratch.fresh_candidates.end(), found.begin(), found.end());
   }
   // Total order: a pair of slots is found once.
-  std::sort(cache.fresh.begin(), cache.fresh.end(),
+  std::sort(scratch.fresh_candidates.begin(), scratch.fresh_candidates.end(),
             [](const ShapePair& a, const ShapePair& b) { return a.key() < b.key(); });
   return true;
 }
@@ -199,7 +200,7 @@ template <int D>
 static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.pair_cache;
   cache.fat.clear();
-  cache.looking.clear();
+  scratch.looking.clear();
   cache.candidates.clear();
   cache.seen_sum = 0;
   for (const Body<D>& body : state.bodies) {
@@ -208,7 +209,7 @@ static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScra
       cache.fat.put(s, cache.boxes[s]);
       cache.seen[s] = 0;
       cache.looks[s] = cache.active[s];
-      if (cache.active[s] != 0) cache.looking.push_back(s);
+      if (cache.active[s] != 0) scratch.looking.push_back(s);
     }
   }
   cache.fat.settle();
@@ -224,18 +225,18 @@ static void merge_candidates(StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.pair_cache;
   std::vector<ShapePair>& merged = scratch.pairs;
   merged.clear();
-  auto fresh = cache.fresh.begin();
+  auto fresh = scratch.fresh_candidates.begin();
   for (const ShapePair& pair : cache.candidates) {
     if ((cache.looks[pair.shape_a] | cache.looks[pair.shape_b]) != 0) continue;
-    for (; fresh != cache.fresh.end() && fresh->key() < pair.key(); ++fresh)
+    for (; fresh != scratch.fresh_candidates.end() && fresh->key() < pair.key(); ++fresh)
       merged.push_back(*fresh);
     merged.push_back(pair);
   }
-  merged.insert(merged.end(), fresh, cache.fresh.end());
+  merged.insert(merged.end(), fresh, scratch.fresh_candidates.end());
   // Not swapped: steps work in shared memory, which would then change its size with each world.
   cache.candidates.assign(merged.begin(), merged.end());
-  for (const std::uint32_t shape : cache.looking) cache.looks[shape] = 0;
-  cache.looking.clear();
+  for (const std::uint32_t shape : scratch.looking) cache.looks[shape] = 0;
+  scratch.looking.clear();
 }
 
 /// The candidates whose boxes overlap now and of which one takes part.
@@ -262,13 +263,13 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
                 StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.pair_cache;
   scratch.pairs.clear();
-  cache.looking.clear();
+  scratch.looking.clear();
   if (!cache.is_known)
     start_anew(state, scratch);
   else if (!cache.forgotten.empty())
-    forget_changed(state, cache);
+    forget_changed(state, scratch);
   move_boxes(context, state, scratch);
-  if (!cache.looking.empty()) {
+  if (!scratch.looking.empty()) {
     // Each pair of boxes that overlap was seen by one of the two at least. So with this bound a
     // tick that is within it is also within the bound of a crowd.
     const std::uint64_t pairs_max = 8 * std::uint64_t{state.header.limits.contacts} + 65536;
