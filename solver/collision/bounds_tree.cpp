@@ -29,7 +29,6 @@ template <int D>
 void BoundsTree<D>::build(std::vector<Leaf>& leaves) {
   keys_.clear();
   leaves_.clear();
-  boxes_.clear();
   if (leaves.empty()) return;
   Bounds<D> world = leaves[0].bounds;
   for (const Leaf& leaf : leaves) world = merged(world, leaf.bounds);
@@ -40,23 +39,29 @@ void BoundsTree<D>::build(std::vector<Leaf>& leaves) {
   // Total order: ids are unique.
   std::sort(keys_.begin(), keys_.end(), [](const Key& a, const Key& b) { return a.code < b.code; });
   for (const Key& key : keys_) leaves_.push_back(leaves[key.leaf]);
-  boxes_.resize(2 * leaves_.size() - 1);
-  build_range(0, 0, size());
+  build_rows();
 }
 
 template <int D>
-Bounds<D> BoundsTree<D>::build_range(int box, int begin, int end) {
-  Bounds<D> bounds;
-  if (end - begin == 1) {
-    bounds = leaf(begin).bounds;
-  } else {
-    const int middle = begin + (end - begin) / 2;
-    const Bounds<D> left = build_range(box + 1, begin, middle);
-    const Bounds<D> right = build_range(box + 2 * (middle - begin), middle, end);
-    bounds = merged(left, right);
+void BoundsTree<D>::put(int level, int child, const Bounds<D>& box) {
+  const auto row = static_cast<std::size_t>(first_row_[level] + child / 4);
+  if (row == rows_.size()) rows_.push_back(BoundsRow<D>::empty());
+  rows_[row].set(child % 4, box);
+}
+
+template <int D>
+void BoundsTree<D>::build_rows() {
+  rows_.clear();
+  first_row_[0] = 0;
+  for (int rank = 0; rank < size(); ++rank) put(0, rank, leaf(rank).bounds);
+  for (levels_ = 1;; ++levels_) {
+    const int begin = first_row_[levels_ - 1];
+    const int end = static_cast<int>(rows_.size());
+    if (end - begin == 1) return;
+    first_row_[levels_] = end;
+    for (int row = begin; row < end; ++row)
+      put(levels_, row - begin, rows_[static_cast<std::size_t>(row)].all());
   }
-  boxes_[static_cast<std::size_t>(box)] = bounds;
-  return bounds;
 }
 
 template class BoundsTree<2>;

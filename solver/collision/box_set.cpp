@@ -21,10 +21,7 @@ template <int D>
 void BoxSet<D>::write(std::uint32_t place, std::uint32_t id, const Bounds<D>& box) {
   Row& row = rows_[place / 4];
   const int lane = static_cast<int>(place % 4);
-  for (int i = 0; i < D; ++i) {
-    row.lower[i].raw[lane] = box.lower[i];
-    row.upper[i].raw[lane] = box.upper[i];
-  }
+  row.boxes.set(lane, box);
   row.id[lane] = id;
   home_[id] = place;
 }
@@ -38,14 +35,7 @@ void BoxSet<D>::put(std::uint32_t id, const Bounds<D>& box) {
   boxes_[id] = box;
   if (home_[id] == kAbsent) ++count_;
   if (home_[id] < kInTree) return write(home_[id], id, box);
-  if (loose_ % 4 == 0) {
-    Row empty{};
-    for (int i = 0; i < D; ++i) {
-      empty.lower[i] = Lanes<4>(3.4e38f);
-      empty.upper[i] = Lanes<4>(-3.4e38f);
-    }
-    rows_.push_back(empty);
-  }
+  if (loose_ % 4 == 0) rows_.push_back({BoundsRow<D>::empty(), {}});
   write(loose_++, id, box);
 }
 
@@ -59,10 +49,7 @@ void BoxSet<D>::take_out(std::uint32_t place) {
     rows_.pop_back();
     return;
   }
-  for (int i = 0; i < D; ++i) {
-    rows_.back().lower[i].raw[static_cast<int>(loose_ % 4)] = 3.4e38f;
-    rows_.back().upper[i].raw[static_cast<int>(loose_ % 4)] = -3.4e38f;
-  }
+  rows_.back().boxes.clear(static_cast<int>(loose_ % 4));
 }
 
 template <int D>

@@ -1,11 +1,10 @@
 #pragma once
 
+#include <bit>
 #include <cstdint>
-#include <cstring>
 #include <vector>
 
 #include "solver/collision/bounds_tree.hpp"
-#include "solver/lanes.hpp"
 
 namespace cycloid::solver {
 
@@ -35,24 +34,14 @@ class BoxSet {
       const std::uint32_t id = tree_.leaf(rank).id;
       if (home_[id] == kInTree) found(id);
     });
-    for (const Row& row : rows_) {
-      typename Lanes<4>::Mask apart{};
-      for (int i = 0; i < D; ++i)
-        apart = apart | (row.lower[i] > Lanes<4>(bounds.upper[i])) |
-                (Lanes<4>(bounds.lower[i]) > row.upper[i]);
-      std::uint64_t halves[2];
-      std::memcpy(halves, &apart, sizeof halves);
-      if ((halves[0] & halves[1]) == ~std::uint64_t{0}) continue;
-      for (int lane = 0; lane < 4; ++lane)
-        if (apart[lane] == 0) found(row.id[lane]);
-    }
+    for (const Row& row : rows_)
+      for (std::uint32_t lanes = row.boxes.overlapping(bounds); lanes != 0; lanes &= lanes - 1)
+        found(row.id[std::countr_zero(lanes)]);
   }
 
  private:
-  /// Four boxes; an empty place has one that overlaps nothing.
   struct Row {
-    Lanes<4> lower[D];
-    Lanes<4> upper[D];
+    BoundsRow<D> boxes;
     std::uint32_t id[4];
   };
   static constexpr std::uint32_t kAbsent = 0xffffffffu;

@@ -1,0 +1,91 @@
+#include "solver/collision/solid_apart.hpp"
+
+namespace cycloid::solver {
+
+/// A face may have to beat one before it by so much to become the axis (AxisTolerance), m.
+static constexpr float kFaceToleranceMax = 5.0e-4f;
+/// Numbers of the solids' own frames differ from placed ones by their roundings, some 1e-6 of the
+/// lengths that meet in them.
+static constexpr float kRounding = 2.0e-5f;
+
+/// A box or hull in its own frame, whose origin is in the middle of it.
+struct OwnSolid {
+  const Shape<3>& shape;
+  PolyhedronView view;   ///< Hull.
+  Rotation<3> rotation;  ///< Into the frame of the collision.
+};
+
+/// A face as a plane: outside where dot(normal, x) > offset.
+struct Plane {
+  Vec<3> normal;
+  float offset;
+};
+
+/// The face of a box that a point is farthest outside of.
+static Plane box_face_towards(const Vec<3>& half, const Vec<3>& point) {
+  int axis = 0;
+  for (int k = 1; k < 3; ++k)
+    if (abs(point[k]) - half[k] > abs(point[axis]) - half[axis]) axis = k;
+  Plane plane{Vec<3>::zero(), half[axis]};
+  plane.normal[axis] = point[axis] < 0.0f ? -1.0f : 1.0f;
+  return plane;
+}
+
+static Plane face_towards(const OwnSolid& solid, const Vec<3>& point) {
+  if (solid.shape.kind == ShapeKind::kBox) return box_face_towards(solid.shape.half, point);
+  Plane best{Vec<3>::zero(), 0.0f};
+  float farthest = -3.4e38f;
+  for (const PolyhedronFace& face : solid.view.faces) {
+    const float outside = dot(face.normal, point) - face.offset;
+    if (!(outside > farthest)) continue;
+    farthest = outside;
+    best = {face.normal, face.offset};
+  }
+  return best;
+}
+
+/// How far the solid reaches against a direction of its frame, from its origin, m: above 0.
+static float reach_against(const OwnSolid& solid, const Vec<3>& direction) {
+  if (solid.shape.kind == ShapeKind::kBox) {
+    float reach = 0.0f;
+    for (int k = 0; k < 3; ++k) reach += abs(direction[k]) * solid.shape.half[k];
+    return reach;
+  }
+  float lowest = 0.0f;
+  for (const PolyhedronVertex& vertex : solid.view.vertices)
+    lowest = min(lowest, dot(direction, vertex.position));
+  return -lowest;
+}
+
+/// @param to_b  from the middle of a to that of b, in the frame of the collision, m.
+static bool face_of_a_parts(const OwnSolid& a, const OwnSolid& b, const Vec<3>& to_b,
+                            float margin) {
+  const Vec<3> centre = rotate_back(a.rotation, to_b);
+  const Plane plane = face_towards(a, centre);
+  const float height = dot(plane.normal, centre) - plane.offset;
+  if (height <= margin) return false;
+  const Vec<3> normal = rotate_back(b.rotation, rotate(a.rotation, plane.normal));
+  return height - reach_against(b, normal) > margin;
+}
+
+static OwnSolid own_solid(const Shape<3>& shape, const Rotation<3>& rotation,
+                          const Polyhedra& polyhedra) {
+  OwnSolid solid{shape, {}, compose(rotation, shape.rotation)};
+  if (shape.kind == ShapeKind::kHull) solid.view = view_of(polyhedra, shape.polyhedron);
+  return solid;
+}
+
+bool a_face_parts(const Shape<3>& a, const Rotation<3>& rotation_a, const Shape<3>& b,
+                  const Rotation<3>& rotation_b, const Vec<3>& a_to_b, const Polyhedra& polyhedra,
+                  float margin) {
+  const OwnSolid own_a = own_solid(a, rotation_a, polyhedra);
+  const OwnSolid own_b = own_solid(b, rotation_b, polyhedra);
+  const Vec<3> from = rotate(rotation_a, a.vertices[0]);
+  const Vec<3> to_b = a_to_b + rotate(rotation_b, b.vertices[0]) - from;
+  const float lengths =
+      length(a_to_b) + length(from) + length(a.half) + length(b.vertices[0]) + length(b.half);
+  const float safe = margin + kFaceToleranceMax + kRounding * lengths;
+  return face_of_a_parts(own_a, own_b, to_b, safe) || face_of_a_parts(own_b, own_a, -to_b, safe);
+}
+
+}  // namespace cycloid::solver
