@@ -9,19 +9,9 @@ Rotation<2> rotation_by(const Spin<2>& turn) {
   sin_cos(turn[0], q[1], q[0]);
   return q;
 }
-/// Below half a radian, which is all but every turn of a substep, four terms of the series of sine
-/// and cosine are exact to rounding, and cost neither a root nor a division.
-static Rotation<3> small_rotation_by(const Spin<3>& turn, float square) {
-  const float x = 0.25f * square;
-  const float sine = 0.5f * (1.0f - x * (1.0f / 6.0f - x * (1.0f / 120.0f - x * (1.0f / 5040.0f))));
-  const float cosine =
-      1.0f - x * (0.5f - x * (1.0f / 24.0f - x * (1.0f / 720.0f - x * (1.0f / 40320.0f))));
-  return {{sine * turn[0], sine * turn[1], sine * turn[2], cosine}};
-}
-
 Rotation<3> rotation_by(const Spin<3>& turn) {
   const float square = dot(turn, turn);
-  if (square < 0.25f) return small_rotation_by(turn, square);
+  if (square < kSmallTurnSquare) return small_rotation_by(turn, square);
   const float angle = sqrt(square);
   float sine = 0.0f;
   float cosine = 0.0f;

@@ -47,6 +47,23 @@ bool can_turn(const BodyMass<D>& mass) {
   return false;
 }
 
+/// Half a radian, squared: below it, which is all but every turn of a substep, four terms of the
+/// series of sine and cosine are exact to rounding, and cost neither a root nor a division.
+inline constexpr float kSmallTurnSquare = 0.25f;
+
+/// The rotation by `turn` [rad], whose square is given, T being a float or lanes of them.
+/// @pre square < kSmallTurnSquare.
+template <class T>
+Vec<4, T> small_rotation_by(const Vec<3, T>& turn, T square) {
+  const T x = T(0.25f) * square;
+  const T sine =
+      T(0.5f) * (T(1.0f) - x * (T(1.0f / 6.0f) - x * (T(1.0f / 120.0f) - x * T(1.0f / 5040.0f))));
+  const T cosine =
+      T(1.0f) -
+      x * (T(0.5f) - x * (T(1.0f / 24.0f) - x * (T(1.0f / 720.0f) - x * T(1.0f / 40320.0f))));
+  return {{sine * turn[0], sine * turn[1], sine * turn[2], cosine}};
+}
+
 /// The rotation by the vector `turn` [rad], exact and not its linearisation: a body that spins
 /// freely keeps its rate.
 Rotation<2> rotation_by(const Spin<2>& turn);
