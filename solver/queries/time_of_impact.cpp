@@ -71,44 +71,55 @@ static float time_to_close(float room, float speed, float turning) {
   return turning > 1.0e-12f ? (max(speed, 0.0f) + root) / turning : 2.0f;
 }
 
-/// The part of the way in which the gap along `axis` surely stays above `level`; 2 and more: for
-/// ever.
-static float safe_step(const Mover<2>& a, const Mover<2>& b, const Vec<2>& axis, float level) {
-  float step = 2.0f;
-  const std::uint32_t count_a = a.core.half_space() ? 1 : a.core.count;
-  const std::uint32_t count_b = b.core.half_space() ? 1 : b.core.count;
-  const float radius = a.core.radius + b.core.radius;
-  for (std::uint32_t i = 0; i < count_a; ++i) {
-    const Support from = support_of(a, i, axis);
-    for (std::uint32_t j = 0; j < count_b; ++j) {
-      const Support to = support_of(b, j, axis);
-      const float room = max(to.height - from.height - radius - level, 0.0f);
-      const float parabola = time_to_close(room, to.speed - from.speed, to.turning + from.turning);
-      // For long steps of fast spins the greatest speed is the better bound.
-      const float line = time_to_close(
-          room, dot(axis, b.translation - a.translation) - to.turn_speed - from.turn_speed, 0.0f);
-      step = min(step, max(parabola, line));
-    }
-  }
-  return step;
-}
-
 /// The vertices of a core along an axis.
+template <int D>
 struct Outline {
   std::uint32_t count = 0;
-  std::array<Support, Dim<3>::kVertices> supports;
+  std::array<Support, Dim<D>::kVertices> supports;
 };
 
-static Outline outline_of(const Mover<3>& mover, const Vec<3>& axis) {
-  Outline outline;
+template <int D>
+static Outline<D> outline_of(const Mover<D>& mover, const Vec<D>& axis) {
+  Outline<D> outline;
   outline.count = mover.core.half_space() ? 1 : mover.core.count;
   for (std::uint32_t i = 0; i < outline.count; ++i)
     outline.supports[i] = support_of(mover, i, axis);
   return outline;
 }
 
+/// Whether a gap of `room` that closes at the speed -`speed` at most surely lasts for `time`.
+static bool surely_lasts(float room, float speed, float time) {
+  return speed >= -1.0e-12f || room > -1.0001f * (time * speed);
+}
+
+/// The part of the way in which the gap along `axis` surely stays above `level`; 2 and more: for
+/// ever. The least over all pairs of vertices of the later of two times: with turning as a bound of
+/// the acceleration, and, which is better for long steps of fast spins, of the speed. So where the
+/// second is late enough the first, which takes a root, is not asked for.
+static float safe_step(const Mover<2>& a, const Mover<2>& b, const Vec<2>& axis, float level) {
+  float step = 2.0f;
+  const Outline<2> outline_a = outline_of(a, axis);
+  const Outline<2> outline_b = outline_of(b, axis);
+  const float radius = a.core.radius + b.core.radius;
+  const float way = dot(axis, b.translation - a.translation);
+  for (std::uint32_t i = 0; i < outline_a.count; ++i) {
+    const Support& from = outline_a.supports[i];
+    for (std::uint32_t j = 0; j < outline_b.count; ++j) {
+      const Support& to = outline_b.supports[j];
+      const float room = max(to.height - from.height - radius - level, 0.0f);
+      const float speed_min = way - to.turn_speed - from.turn_speed;
+      if (surely_lasts(room, speed_min, step)) continue;
+      const float line = time_to_close(room, speed_min, 0.0f);
+      if (line >= step) continue;
+      const float parabola = time_to_close(room, to.speed - from.speed, to.turning + from.turning);
+      step = min(step, max(parabola, line));
+    }
+  }
+  return step;
+}
+
 /// Of the heights after `time` the one that reaches farthest: `side` 1: upwards, -1: downwards.
-static const Support& farthest_after(const Outline& outline, float side, float time) {
+static const Support& farthest_after(const Outline<3>& outline, float side, float time) {
   std::uint32_t best = 0;
   float highest = -3.0e38f;
   for (std::uint32_t i = 0; i < outline.count; ++i) {
@@ -125,7 +136,7 @@ static const Support& farthest_after(const Outline& outline, float side, float t
 /// How long no pair of vertices closes its gap: as the least `time_to_close` over all pairs, but
 /// only of those that are nearest at a time already found. Each such pair shortens the time until
 /// the pair that is nearest then has just closed; where that takes too many, all pairs are asked.
-static float time_until_close(const Outline& a, const Outline& b, float clearance) {
+static float time_until_close(const Outline<3>& a, const Outline<3>& b, float clearance) {
   constexpr int kRounds = 16;
   const auto time_of = [&](const Support& from, const Support& to) {
     const float room = max(to.height - from.height - clearance, 0.0f);
@@ -147,9 +158,9 @@ static float time_until_close(const Outline& a, const Outline& b, float clearanc
 
 /// Every vertex at the greatest speed its turning can have: for long steps of fast spins the better
 /// bound. `side` as above.
-static Outline without_curve(const Mover<3>& mover, const Vec<3>& axis, float side,
-                             const Outline& outline) {
-  Outline straight = outline;
+static Outline<3> without_curve(const Mover<3>& mover, const Vec<3>& axis, float side,
+                                const Outline<3>& outline) {
+  Outline<3> straight = outline;
   const float speed = dot(axis, mover.translation);
   for (std::uint32_t i = 0; i < outline.count; ++i) {
     straight.supports[i].speed = speed + side * outline.supports[i].turn_speed;
@@ -159,8 +170,8 @@ static Outline without_curve(const Mover<3>& mover, const Vec<3>& axis, float si
 }
 
 static float safe_step(const Mover<3>& a, const Mover<3>& b, const Vec<3>& axis, float level) {
-  const Outline from = outline_of(a, axis);
-  const Outline to = outline_of(b, axis);
+  const Outline<3> from = outline_of(a, axis);
+  const Outline<3> to = outline_of(b, axis);
   const float clearance = a.core.radius + b.core.radius + level;
   const float parabola = time_until_close(from, to, clearance);
   if (parabola >= 2.0f) return parabola;

@@ -48,12 +48,14 @@ static bool is_fast(const Body<D>& body, const BodySweep<D>& sweep) {
   return way > 0.5f * body.thickness;
 }
 
-/// Whether two bodies stay farther apart than their reach, which decides most pairs that are near
-/// and do not meet: then no shape of one meets any of the other.
+/// Whether a body stays farther than `reach` from another, whose way is not known but for where it
+/// leads: it decides most pairs that are near and do not meet. Then no shape of one meets any of
+/// the other.
 template <int D>
-static bool stays_clear(const BodySweep<D>& a, const BodySweep<D>& b, float reach) {
-  const Vec<D> from = b.start.position - a.start.position;
-  const Vec<D> way = b.translation - a.translation;
+static bool stays_clear(const Vec<D>& start_a, const Vec<D>& translation_a, const BodySweep<D>& b,
+                        float reach) {
+  const Vec<D> from = b.start.position - start_a;
+  const Vec<D> way = b.translation - translation_a;
   const float square = dot(way, way);
   const float fraction = square > 0.0f ? clamp(-dot(from, way) / square, 0.0f, 1.0f) : 0.0f;
   const Vec<D> nearest = from + fraction * way;
@@ -127,11 +129,13 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
   const Shape<D>& a = state.shapes[other];
   const Shape<D>& b = state.shapes[shape];
   const float target = target_of(context.tuning, state.bodies[b.body].thickness);
-  const BodySweep<D> other_sweep = sweep_of(context, state, scratch, a.body);
   // A hundredth more than what counts as a touch covers all rounding.
   const float reach =
       1.01f * (state.bodies[a.body].extent + state.bodies[b.body].extent + target) + target;
-  if (a.vertex_count > 0 && stays_clear(other_sweep, sweep, reach)) return 1.0f;
+  if (a.vertex_count > 0 && stays_clear(state.bodies[a.body].position,
+                                        scratch.motions[a.body].delta_position, sweep, reach))
+    return 1.0f;
+  const BodySweep<D> other_sweep = sweep_of(context, state, scratch, a.body);
   if (a.kind == ShapeKind::kHalfSpace && stays_above(other_sweep, a, sweep, reach)) return 1.0f;
   const float tolerance = 0.25f * target;
   if (has_contact(scratch, shape, other) &&
