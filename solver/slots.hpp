@@ -17,7 +17,7 @@ bool has_room(const Slots& slots, const std::vector<std::uint32_t>& free, std::s
 template <class Record>
 std::uint32_t take_slot(std::vector<Record>& slots, std::vector<std::uint32_t>& free) {
   if (free.empty()) {
-    // By a quarter, for a server holds hundreds of worlds, and of each what no record takes is lost.
+    // By a quarter: a server holds hundreds of worlds, each with the room that nothing takes.
     const std::size_t more = slots.size() / 4;
     if (slots.size() == slots.capacity()) slots.reserve(slots.size() + (more < 8 ? 8 : more));
     slots.push_back(Record{});
