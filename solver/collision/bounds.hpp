@@ -60,15 +60,15 @@ inline Lanes<4> least_of_four(Lanes<4> a) {
 /// What boxes mostly are in the plane: the four vertices side by side. The same numbers as one
 /// after the other.
 inline Bounds<2> bounds_of_four(const std::array<Vec<2>, 8>& vertices, const Pose<2>& pose) {
-  using Wide = Lanes<4>;
-  using Raw = Wide::Raw;
-  const Raw low = Wide::load(vertices[0].v).raw;
-  const Raw high = Wide::load(vertices[2].v).raw;
-  const Vec<2, Wide> r{
-      {Wide(Raw{low[0], low[2], high[0], high[2]}), Wide(Raw{low[1], low[3], high[1], high[3]})}};
-  const Vec<2, Wide> turn{{Wide(pose.rotation[0]), Wide(pose.rotation[1])}};
-  const Vec<2, Wide> at{{Wide(pose.position[0]), Wide(pose.position[1])}};
-  const Vec<2, Wide> placed = at + rotate(turn, r);
+  using Four = Lanes<4>;
+  using Raw = Four::Raw;
+  const Raw low = Four::load(vertices[0].v).raw;
+  const Raw high = Four::load(vertices[2].v).raw;
+  const Vec<2, Four> r{
+      {Four(Raw{low[0], low[2], high[0], high[2]}), Four(Raw{low[1], low[3], high[1], high[3]})}};
+  const Vec<2, Four> turn{{Four(pose.rotation[0]), Four(pose.rotation[1])}};
+  const Vec<2, Four> at{{Four(pose.position[0]), Four(pose.position[1])}};
+  const Vec<2, Four> placed = at + rotate(turn, r);
   Bounds<2> bounds;
   for (int i = 0; i < 2; ++i) {
     bounds.lower[i] = least_of_four(placed[i]).raw[0];
