@@ -1,3 +1,4 @@
+#include "bench/peers/box2d3_world.hpp"
 #include "bench/peers/box2d_world.hpp"
 #include "bench/peers/bullet_world.hpp"
 #include "bench/peers/ode_world.hpp"
@@ -7,8 +8,13 @@ namespace cycloid::peers {
 
 template <>
 std::span<const EngineKind<2>> engines<2>() {
-  static constexpr EngineKind<2> kEngines[] = {{"ours", 0, make_our_world<2>},
-                                               {"Box2D 2.4.1", 8, make_box2d_world}};
+  static constexpr EngineKind<2> kEngines[] = {
+      {"ours", 0, make_our_world<2>},
+      {"Box2D 2.4.1", 8, make_box2d_world},
+#ifdef CYCLOID_BOX2D3
+      {"Box2D " CYCLOID_BOX2D3, 4, make_box2d3_world},
+#endif
+  };
   return kEngines;
 }
 

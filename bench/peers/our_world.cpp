@@ -43,6 +43,15 @@ class OurWorld final : public Engine<D> {
   std::unique_ptr<scenes::Built<D>> built_;
 };
 
+/// What all our worlds that are there at the same time step in, as the rooms of a server do.
+template <int D>
+static std::shared_ptr<solver::StepMemory<D>> shared_step_memory() {
+  static std::weak_ptr<solver::StepMemory<D>> kept;
+  std::shared_ptr<solver::StepMemory<D>> memory = kept.lock();
+  if (memory == nullptr) kept = memory = solver::make_step_memory<D>();
+  return memory;
+}
+
 template <int D>
 std::unique_ptr<Engine<D>> make_our_world(const EngineInput<D>& input, std::string& why) {
   std::vector<scenes::Mistake> mistakes;
@@ -57,6 +66,7 @@ std::unique_ptr<Engine<D>> make_our_world(const EngineInput<D>& input, std::stri
     why = error.field;
     return nullptr;
   }
+  built->world.use_step_memory(shared_step_memory<D>());
   return std::make_unique<OurWorld<D>>(std::move(built));
 }
 
