@@ -9,6 +9,7 @@ Rotation<2> rotation_by(const Spin<2>& turn) {
   sin_cos(turn[0], q[1], q[0]);
   return q;
 }
+
 Rotation<3> rotation_by(const Spin<3>& turn) {
   const float square = dot(turn, turn);
   if (square < kSmallTurnSquare) return small_rotation_by(turn, square);

@@ -264,7 +264,7 @@ Error World<D>::step() {
     return {Code::kFaulted, "limits.contacts"};
   }
   solve_tick(lanes_, context, state_, *workers_, scratch);
-  if (const Fault fault = find_fault(state_, scratch); fault.field != kFaultNone) {
+  if (const Fault fault = find_fault(state_, *workers_, scratch); fault.field != kFaultNone) {
     state_.header.fault = fault;
     return {Code::kFaulted, fault_field_name(fault.field), static_cast<int>(fault.body.index)};
   }
@@ -275,7 +275,7 @@ Error World<D>::step() {
   for (const std::uint32_t contact : scratch.began)
     events_.push_back(contact_event(state_, scratch.contacts[contact], true));
   if (!state_.particles.empty()) scratch.before = state_;
-  finalize(scratch, state_);
+  finalize(*workers_, scratch, state_);
   traced(Phase::kFinalize);
   rest_islands(context, scratch, state_);
   traced(Phase::kRest);

@@ -66,24 +66,33 @@ struct KeptByWorld {
   StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
 };
 
+/// The contacts of a tick in the order of their shapes, or those of one chunk of its pairs.
+template <int D>
+struct ContactList {
+  std::vector<Contact<D>> contacts;    ///< Of a tick: become the state's when the step commits.
+  std::vector<Manifold<D>> manifolds;  ///< Of each contact.
+  std::vector<int> live_contacts;      ///< Those with a manifold; the others are asleep.
+  std::vector<std::uint32_t> began;    ///< Contacts that touch and did not.
+  std::vector<std::uint32_t> ended;    ///< Contacts of the state that no longer touch.
+  std::vector<Manifold<D>> found;      ///< Of a batch of pairs; empty where shapes are apart.
+};
+
 /// Everything a step computes and throws away: nothing in here that shows outlives a tick, so
 /// nothing in here is state. Lent for a step: what is left in it may be another world's, but for
 /// what the world keeps, which is put in for that time (step_memory.hpp).
 template <int D>
-struct StepScratch : KeptByWorld<D> {
+struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::vector<typename BoundsTree<D>::Leaf> leaves;
   std::vector<std::uint32_t> looking;  ///< Shapes that look for their candidates anew.
-  std::vector<std::vector<ShapePair>> found_candidates;  ///< By chunk of those.
-  std::vector<ShapePair> fresh_candidates;               ///< All of them, sorted by key.
-  std::vector<ShapePair> pairs;                          ///< Sorted by key.
-  std::vector<Manifold<D>> pair_manifolds;  ///< Of a batch of pairs; empty where shapes are apart.
+  std::vector<std::uint32_t> leaving;  ///< Shapes that left their fat boxes.
+  std::vector<std::vector<std::uint32_t>> leaving_chunks;
+  std::vector<std::vector<ShapePair>> pair_chunks;
+  std::vector<ShapePair> fresh_candidates;  ///< Of those that look, sorted by key.
+  std::vector<ShapePair> pairs;             ///< Sorted by key.
+  std::vector<ContactList<D>> contact_chunks;
 
-  std::vector<Contact<D>> contacts;    ///< Becomes the state's when the step commits.
-  std::vector<Manifold<D>> manifolds;  ///< Of each contact.
-  std::vector<std::uint32_t> began;    ///< Contacts that touch and did not.
-  std::vector<std::uint32_t> ended;    ///< Contacts of the state that no longer touch.
-  std::vector<std::uint8_t> active;    ///< By body: it took part by itself as the tick began.
-  std::uint32_t bodies_asleep = 0;     ///< Those that did not, and could move; later, that do not.
+  std::vector<std::uint8_t> active;  ///< By body: it took part by itself as the tick began.
+  std::uint32_t bodies_asleep = 0;   ///< Those that did not, and could move; later, that do not.
 
   bool islands_are_known = false;        ///< Only where somebody wakes, or is to fall asleep.
   std::vector<std::uint32_t> islands;    ///< Parent of each body; the root is its lowest slot.
@@ -91,7 +100,6 @@ struct StepScratch : KeptByWorld<D> {
   std::vector<std::uint8_t> island_flags;
   std::vector<std::uint8_t> awake;          ///< By body, and 0 for the resting one of unused lanes.
   std::vector<std::uint32_t> awake_bodies;  ///< Their slots, ascending: alone they move.
-  std::vector<int> live_contacts;           ///< Those with a manifold; the others are asleep.
 
   std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
   std::vector<BodyMass<D>> masses;

@@ -28,10 +28,11 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
 
 namespace cycloid::solver {
 
-/// How often a thread looks for what it waits for before it sleeps, some tens of microseconds in
-/// all: to wake a sleeping thread takes longer than most of the hundred jobs of a step. It yields
-/// between looks, so where there are more workers than processors the others go on meanwhile.
-static constexpr int kLooks = 200;
+/// How often a thread looks for what it waits for before it sleeps, a few hundred microseconds in
+/// all: to wake a sleeping thread takes longer than most of the hundred jobs of a step, and what
+/// one thread does alone between them takes up to that long. It yields between looks, so where
+/// there are more workers than processors the others go on meanwhile.
+static constexpr int kLooks = 1000;
 
 /// A number to wait for. Not std::atomic's own `wait`: where the system has no futex, such as on
 /// Windows, GCC 12's library looks at the number before it takes the lock that it sleeps by, and a

@@ -16,12 +16,13 @@ struct Range {
 
 /// A count that all threads add to. Who adds first cannot be seen as long as only this is asked:
 /// whether the sum of all is over a limit, and what follows if it is does not use who was cut
-/// short.
+/// short; and the sum, once all are done.
 class Tally {
  public:
-  explicit Tally(std::uint64_t limit) : limit_(limit) {}
+  explicit Tally(std::uint64_t limit = 0) : limit_(limit) {}
   void add(std::uint64_t count) { sum_.fetch_add(count, std::memory_order_relaxed); }
-  bool is_over() const { return sum_.load(std::memory_order_relaxed) > limit_; }
+  bool is_over() const { return sum() > limit_; }
+  std::uint64_t sum() const { return sum_.load(std::memory_order_relaxed); }
 
  private:
   std::uint64_t limit_;

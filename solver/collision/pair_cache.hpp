@@ -41,7 +41,7 @@ Bounds<D> fattened(const Bounds<D>& box, const Vec<D>& flight) {
 /// overlapping boxes is among them; only shapes that left their fat box are looked up again.
 template <int D>
 struct PairCache {
-  std::vector<Bounds<D>> boxes;        ///< By shape: of this tick. A half-space's is everything.
+  std::vector<Bounds<D>> boxes;        ///< By shape: of this tick. A half-space's is open.
   std::vector<std::uint8_t> active;    ///< By shape: its body takes part in this tick.
   std::vector<std::uint8_t> is_still;  ///< By shape: its box was made while nothing moved it.
   std::vector<std::uint8_t> looks;     ///< By shape: it is looked up in this tick.

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "solver/collision/collide.hpp"
 #include "solver/stages/stages.hpp"
 
@@ -69,20 +71,20 @@ static bool rests(const Contact<D>& old, const PairCache<D>& cache) {
 /// looked for their pairs, and nothing has moved. There may be very many, so they are copied at
 /// once.
 template <int D>
-static void pass_old(const WorldState<D>& state, std::uint64_t key, std::uint32_t& old,
-                     StepScratch<D>& scratch) {
+static void pass_old(const WorldState<D>& state, const PairCache<D>& cache, std::uint64_t key,
+                     std::uint32_t& old, ContactList<D>& list) {
   const auto count = static_cast<std::uint32_t>(state.contacts.size());
   const auto is_passed = [&] { return old < count && key_of(state.contacts[old]) < key; };
   while (is_passed()) {
     const std::uint32_t begin = old;
-    while (is_passed() && rests(state.contacts[old], scratch.pair_cache)) ++old;
+    while (is_passed() && rests(state.contacts[old], cache)) ++old;
     if (begin != old) {
-      scratch.contacts.insert(scratch.contacts.end(), state.contacts.begin() + begin,
-                              state.contacts.begin() + old);
-      scratch.manifolds.resize(scratch.contacts.size());
+      list.contacts.insert(list.contacts.end(), state.contacts.begin() + begin,
+                           state.contacts.begin() + old);
+      list.manifolds.resize(list.contacts.size());
     }
     if (!is_passed()) return;
-    if (state.contacts[old].touching != 0) scratch.ended.push_back(old);
+    if (state.contacts[old].touching != 0) list.ended.push_back(old);
     ++old;
   }
 }
@@ -90,60 +92,126 @@ static void pass_old(const WorldState<D>& state, std::uint64_t key, std::uint32_
 /// Lists the contact of a pair with points. `old` is where to go on among the old contacts.
 template <int D>
 static void add_contact(const WorldState<D>& state, const ShapePair& pair,
-                        const Manifold<D>& manifold, std::uint32_t& old, StepScratch<D>& scratch) {
+                        const Manifold<D>& manifold, std::uint32_t& old, ContactList<D>& list) {
   const auto count = static_cast<std::uint32_t>(state.contacts.size());
-  pass_old(state, pair.key(), old, scratch);
   if (manifold.point_count == 0) return;
-  scratch.live_contacts.push_back(static_cast<int>(scratch.contacts.size()));
+  list.live_contacts.push_back(static_cast<int>(list.contacts.size()));
   const bool persists = old < count && key_of(state.contacts[old]) == pair.key();
   const Contact<D>* before = persists ? &state.contacts[old] : nullptr;
-  Contact<D>& contact = scratch.contacts.emplace_back();
+  Contact<D>& contact = list.contacts.emplace_back();
   contact.shape_a = pair.shape_a;
   contact.shape_b = pair.shape_b;
   take_points(manifold, state.header.tuning.slop, before, contact);
-  scratch.manifolds.push_back(manifold);
+  list.manifolds.push_back(manifold);
   const bool touched = persists && before->touching != 0;
   if (contact.touching != 0 && !touched)
-    scratch.began.push_back(static_cast<std::uint32_t>(scratch.contacts.size() - 1));
-  if (contact.touching == 0 && touched) scratch.ended.push_back(old);
+    list.began.push_back(static_cast<std::uint32_t>(list.contacts.size() - 1));
+  if (contact.touching == 0 && touched) list.ended.push_back(old);
   if (persists) ++old;
+}
+
+template <int D>
+static void clear(ContactList<D>& list) {
+  list.contacts.clear();
+  list.manifolds.clear();
+  list.live_contacts.clear();
+  list.began.clear();
+  list.ended.clear();
+}
+
+/// Lists the contacts of a range of the pairs, and the old ones from the first of them up to the
+/// next range: batch by batch, while manifolds are at hand.
+template <int D>
+static void collide_range(const Collider<D>& collider, const StepContext<D>& context,
+                          const WorldState<D>& state, const StepScratch<D>& scratch, Range range,
+                          ContactList<D>& list) {
+  const std::vector<ShapePair>& pairs = scratch.pairs;
+  const auto key_at = [&](int i) { return pairs[static_cast<std::size_t>(i)].key(); };
+  std::uint32_t old = 0;
+  if (range.begin > 0)
+    old = static_cast<std::uint32_t>(
+        std::lower_bound(
+            state.contacts.begin(), state.contacts.end(), key_at(range.begin),
+            [](const Contact<D>& contact, std::uint64_t key) { return key_of(contact) < key; }) -
+        state.contacts.begin());
+  list.found.resize(kPairGrain);
+  for (int begin = range.begin; begin < range.end; begin += kPairGrain) {
+    const int size = std::min(kPairGrain, range.end - begin);
+    PlacedPair<D> batch[kPairGrain];
+    for (int i = 0; i < size; ++i)
+      batch[i] = placed(context, state, pairs[static_cast<std::size_t>(begin + i)]);
+    collider(batch, size, list.found.data());
+    for (int i = 0; i < size; ++i) {
+      const ShapePair& pair = pairs[static_cast<std::size_t>(begin + i)];
+      pass_old(state, scratch.pair_cache, pair.key(), old, list);
+      add_contact(state, pair, list.found[static_cast<std::size_t>(i)], old, list);
+    }
+  }
+  const bool is_last = range.end == static_cast<int>(pairs.size());
+  pass_old(state, scratch.pair_cache, is_last ? ~std::uint64_t{0} : key_at(range.end), old, list);
+}
+
+/// Appends the lists of all chunks to the step's. Which contacts those are, by number, depends on
+/// how many the chunks before hold.
+template <int D>
+static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scratch) {
+  std::size_t contacts = 0;
+  std::size_t live = 0;
+  for (std::size_t c = 0; c < chunks; ++c) {
+    ContactList<D>& chunk = scratch.contact_chunks[c];
+    for (const std::uint32_t began : chunk.began)
+      scratch.began.push_back(static_cast<std::uint32_t>(contacts) + began);
+    scratch.ended.insert(scratch.ended.end(), chunk.ended.begin(), chunk.ended.end());
+    for (int& place : chunk.live_contacts) place += static_cast<int>(contacts);
+    contacts += chunk.contacts.size();
+    live += chunk.live_contacts.size();
+  }
+  scratch.contacts.resize(contacts);
+  scratch.manifolds.resize(contacts);
+  scratch.live_contacts.resize(live);
+  workers.parallel_for(static_cast<int>(chunks), 1, [&](Range range) {
+    std::size_t contact = 0;
+    std::size_t place = 0;
+    const auto own = static_cast<std::size_t>(range.begin);
+    for (std::size_t c = 0; c < own; ++c) {
+      contact += scratch.contact_chunks[c].contacts.size();
+      place += scratch.contact_chunks[c].live_contacts.size();
+    }
+    const ContactList<D>& chunk = scratch.contact_chunks[own];
+    std::copy(chunk.contacts.begin(), chunk.contacts.end(), scratch.contacts.begin() + contact);
+    std::copy(chunk.manifolds.begin(), chunk.manifolds.end(), scratch.manifolds.begin() + contact);
+    std::copy(chunk.live_contacts.begin(), chunk.live_contacts.end(),
+              scratch.live_contacts.begin() + place);
+  });
 }
 
 /// The contact points of every pair, with last tick's impulses where the same features met, and
 /// which contacts began and ended.
 ///
-/// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes
-/// pair_manifolds, contacts, manifolds, which contacts are live, began and ended. Each pair writes
-/// its own manifold; contacts are then listed in the order of the pairs, which is that of the
-/// shapes' slots, beside the old ones in the same order. One thread does so batch by batch, while
-/// they are at hand; several find all manifolds first.
+/// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes contacts,
+/// manifolds, which contacts are live, began and ended. Contacts are listed in the order of the
+/// pairs, which is that of the shapes' slots, beside the old ones in the same order. One thread
+/// lists them at once; of several each takes chunks of the pairs, whose lists are joined.
 template <int D>
 void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
                    Workers& workers, StepScratch<D>& scratch) {
-  scratch.contacts.clear();
-  scratch.manifolds.clear();
-  scratch.live_contacts.clear();
-  scratch.began.clear();
-  scratch.ended.clear();
-  const int count = static_cast<int>(scratch.pairs.size());
-  const int batch = workers.count() == 1 && count > kPairGrain ? kPairGrain : count;
-  scratch.pair_manifolds.resize(static_cast<std::size_t>(batch));
+  constexpr int kChunk = 8 * kPairGrain;
   const Collider<D> collider{state.shapes.data(), state.polyhedra, lanes};
-  std::uint32_t old = 0;
-  for (int begin = 0; begin < count; begin += batch) {
-    const ShapePair* pairs = scratch.pairs.data() + begin;
-    const int size = count - begin < batch ? count - begin : batch;
-    workers.parallel_for(size, kPairGrain, [&](Range range) {
-      PlacedPair<D> in_range[kPairGrain];
-      for (int i = range.begin; i < range.end; ++i)
-        in_range[i - range.begin] = placed(context, state, pairs[i]);
-      collider(in_range, range.end - range.begin, scratch.pair_manifolds.data() + range.begin);
-    });
-    for (int i = 0; i < size; ++i)
-      add_contact(state, pairs[i], scratch.pair_manifolds[static_cast<std::size_t>(i)], old,
-                  scratch);
-  }
-  pass_old(state, ~std::uint64_t{0}, old, scratch);
+  const int count = static_cast<int>(scratch.pairs.size());
+  clear<D>(scratch);
+  if (workers.count() == 1 || count <= kChunk)
+    return collide_range<D>(collider, context, state, scratch, {0, count}, scratch);
+  const auto chunks = static_cast<std::size_t>((count + kChunk - 1) / kChunk);
+  if (scratch.contact_chunks.size() < chunks) scratch.contact_chunks.resize(chunks);
+  workers.parallel_for(count, kChunk, [&](Range range) {
+    ContactList<D>& list = scratch.contact_chunks[static_cast<std::size_t>(range.begin / kChunk)];
+    clear(list);
+    list.contacts.reserve(kChunk);
+    list.manifolds.reserve(kChunk);
+    list.live_contacts.reserve(kChunk);
+    collide_range(collider, context, state, scratch, range, list);
+  });
+  join_lists(chunks, workers, scratch);
 }
 
 template void collide_pairs(int, const StepContext<2>&, const WorldState<2>&, Workers&,

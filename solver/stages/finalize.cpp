@@ -6,18 +6,34 @@
 
 namespace cycloid::solver {
 
-/// Reads the motions of who is awake, which alone can move; writes nothing. Serial and in slot
-/// order, so every machine names the same body.
+/// What of a body would leave the bounds, or kFaultNone.
 template <int D>
-Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch) {
-  for (const std::uint32_t i : scratch.awake_bodies) {
-    const Motion<D>& motion = scratch.motions[i];
-    FaultField field = kFaultNone;
-    if (!within(motion.spin, kSpinMax)) field = kFaultSpin;
-    if (!within(motion.velocity, kSpeedMax)) field = kFaultVelocity;
-    if (!within(motion.delta_rotation, 2.0f)) field = kFaultRotation;
-    if (!within(state.bodies[i].position + motion.delta_position, kPositionMax))
-      field = kFaultPosition;
+static FaultField fault_of(const Body<D>& body, const Motion<D>& motion) {
+  if (!within(body.position + motion.delta_position, kPositionMax)) return kFaultPosition;
+  if (!within(motion.delta_rotation, 2.0f)) return kFaultRotation;
+  if (!within(motion.velocity, kSpeedMax)) return kFaultVelocity;
+  if (!within(motion.spin, kSpinMax)) return kFaultSpin;
+  return kFaultNone;
+}
+
+/// Reads the motions of who is awake, which alone can move; writes nothing. Whether there is a
+/// fault is asked in ranges; if so, which one, in slot order, so that every machine names the same
+/// body.
+template <int D>
+Fault find_fault(const WorldState<D>& state, Workers& workers, const StepScratch<D>& scratch) {
+  const std::vector<std::uint32_t>& awake = scratch.awake_bodies;
+  Tally faults;
+  workers.parallel_for(static_cast<int>(awake.size()), kBodyGrain, [&](Range range) {
+    bool any = false;
+    for (int i = range.begin; i < range.end; ++i) {
+      const std::uint32_t slot = awake[static_cast<std::size_t>(i)];
+      any = any || fault_of(state.bodies[slot], scratch.motions[slot]) != kFaultNone;
+    }
+    if (any) faults.add(1);
+  });
+  if (faults.sum() == 0) return {};
+  for (const std::uint32_t i : awake) {
+    const FaultField field = fault_of(state.bodies[i], scratch.motions[i]);
     if (field != kFaultNone) return {state.header.tick + 1, {i, state.bodies[i].generation}, field};
   }
   return {};
@@ -26,28 +42,41 @@ Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch) {
 /// A copy, because the scratch is not the world's own. Grows as a list that is appended to, so that
 /// contacts which come and go do not allocate in each tick.
 template <int D>
-static void take_contacts(const std::vector<Contact<D>>& from, std::vector<Contact<D>>& to) {
+static void take_contacts(const std::vector<Contact<D>>& from, Workers& workers,
+                          std::vector<Contact<D>>& to) {
+  constexpr int kContactGrain = 1024;
   if (from.size() > to.capacity()) to.reserve(std::max(from.size(), 2 * to.capacity()));
-  to.assign(from.begin(), from.end());
+  to.resize(from.size());
+  workers.parallel_for(static_cast<int>(from.size()), kContactGrain, [&](Range range) {
+    std::copy(from.begin() + range.begin, from.begin() + range.end, to.begin() + range.begin);
+  });
+}
+
+template <int D>
+static void take_motion(const Motion<D>& motion, Body<D>& body) {
+  body.force = Vec<D>::zero();
+  body.torque = Spin<D>::zero();
+  body.velocity = motion.velocity;
+  body.spin = motion.spin;
+  body.position += motion.delta_position;
+  body.rotation = normalized_or(compose(motion.delta_rotation, body.rotation), body.rotation);
 }
 
 /// x' = x + dx, q' = dq q at unit length; the contacts and impulses of this tick become the
 /// state's; forces are spent.
 ///
 /// Reads motions, contacts and joint rows; writes bodies, contacts, joints and the tick. Everything
-/// before this stage left the state as it was, so a fault costs nothing to undo.
+/// before this stage left the state as it was, so a fault costs nothing to undo. Each body, joint
+/// and contact by itself.
 template <int D>
-void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
-  for (const std::uint32_t i : scratch.awake_bodies) {
-    Body<D>& body = state.bodies[i];
-    body.force = Vec<D>::zero();
-    body.torque = Spin<D>::zero();
-    const Motion<D>& motion = scratch.motions[i];
-    body.velocity = motion.velocity;
-    body.spin = motion.spin;
-    body.position += motion.delta_position;
-    body.rotation = normalized_or(compose(motion.delta_rotation, body.rotation), body.rotation);
-  }
+void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
+  const std::vector<std::uint32_t>& awake = scratch.awake_bodies;
+  workers.parallel_for(static_cast<int>(awake.size()), kBodyGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const std::uint32_t slot = awake[static_cast<std::size_t>(i)];
+      take_motion(scratch.motions[slot], state.bodies[slot]);
+    }
+  });
   for (const JointRow<D>& row : scratch.joint_rows) {
     Joint<D>& joint = state.joints[row.joint];
     for (int i = 0; i < Dim<D>::kFreedoms; ++i)
@@ -61,13 +90,13 @@ void finalize(StepScratch<D>& scratch, WorldState<D>& state) {
     joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
                        unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};
   }
-  take_contacts(scratch.contacts, state.contacts);
+  take_contacts(scratch.contacts, workers, state.contacts);
   ++state.header.tick;
 }
 
-template Fault find_fault(const WorldState<2>&, const StepScratch<2>&);
-template Fault find_fault(const WorldState<3>&, const StepScratch<3>&);
-template void finalize(StepScratch<2>&, WorldState<2>&);
-template void finalize(StepScratch<3>&, WorldState<3>&);
+template Fault find_fault(const WorldState<2>&, Workers&, const StepScratch<2>&);
+template Fault find_fault(const WorldState<3>&, Workers&, const StepScratch<3>&);
+template void finalize(Workers&, StepScratch<2>&, WorldState<2>&);
+template void finalize(Workers&, StepScratch<3>&, WorldState<3>&);
 
 }  // namespace cycloid::solver

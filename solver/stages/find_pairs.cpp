@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/stages/in_chunks.hpp"
 #include "solver/stages/may_touch.hpp"
 #include "solver/stages/stages.hpp"
 
@@ -30,11 +31,35 @@ static void list_jointed_bodies(const WorldState<D>& state, PairCache<D>& cache)
   std::sort(cache.jointed_bodies.begin(), cache.jointed_bodies.end());
 }
 
+/// A floor or a wall along an axis of the world is open on all sides but one; any other half-space,
+/// and one that can move, is everywhere. Wider by far more than what rounding makes of a height, so
+/// that it leaves out nothing that would get contact points.
+template <int D>
+static Bounds<D> bounds_of_half_space(const Body<D>& body, const Shape<D>& shape) {
+  constexpr float kEverywhere = std::numeric_limits<float>::infinity();
+  Bounds<D> box;
+  for (int i = 0; i < D; ++i) {
+    box.lower[i] = -kEverywhere;
+    box.upper[i] = kEverywhere;
+  }
+  if (body.kind != BodyKind::kStatic) return box;
+  const Vec<D> normal = rotate(body.rotation, shape.normal);
+  for (int i = 0; i < D; ++i) {
+    if (abs(normal[i]) != 1.0f || dot(normal, normal) != 1.0f) continue;
+    const float height = body.position[i] + normal[i] * shape.offset;
+    const float slack = 1.0e-3f + 1.0e-5f * (abs(body.position[i]) + abs(shape.offset));
+    if (normal[i] > 0.0f)
+      box.upper[i] = height + slack;
+    else
+      box.lower[i] = height - slack;
+  }
+  return box;
+}
+
 /// Their boxes are not widened, because those of all that may meet them are; so they stay the same
 /// as long as no static body comes, goes or is moved.
 template <int D>
 static void list_statics(const WorldState<D>& state, StepScratch<D>& scratch) {
-  constexpr float kEverywhere = std::numeric_limits<float>::infinity();
   scratch.leaves.clear();
   scratch.unbounded.clear();
   for (std::uint32_t s = 0; s < state.shapes.size(); ++s) {
@@ -44,10 +69,7 @@ static void list_statics(const WorldState<D>& state, StepScratch<D>& scratch) {
     Bounds<D>& box = scratch.pair_cache.boxes[s];
     if (shape.kind == ShapeKind::kHalfSpace) {
       scratch.unbounded.push_back(s);
-      for (int i = 0; i < D; ++i) {
-        box.lower[i] = -kEverywhere;
-        box.upper[i] = kEverywhere;
-      }
+      box = bounds_of_half_space(body, shape);
     } else if (body.kind == BodyKind::kStatic) {
       box = bounds_of(shape, Pose<D>{body.position, body.rotation}, 0.0f);
       scratch.leaves.push_back({box, s});
@@ -97,36 +119,54 @@ static void forget_changed(const WorldState<D>& state, StepScratch<D>& scratch) 
   list_jointed_bodies(state, cache);
 }
 
+/// The boxes of a body that can move, and which of its shapes left their fat ones.
+template <int D>
+static void move_boxes_of(const StepContext<D>& context, const WorldState<D>& state,
+                          const Body<D>& body, std::uint8_t active, PairCache<D>& cache,
+                          std::vector<std::uint32_t>& leaving) {
+  const Pose<D> pose{body.position, body.rotation};
+  const float margin = context.tuning.speculative_distance + context.tick_s * length(body.velocity);
+  for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
+    cache.active[s] = active;
+    cache.is_still[s] = active ^ 1;
+    cache.boxes[s] = bounds_of(state.shapes[s], pose, margin);
+    if (!cache.fat.contains(s) || !lies_in(cache.boxes[s], cache.fat.box(s))) leaving.push_back(s);
+  }
+}
+
 /// The box of each shape that can move: widened by the speculative distance and by how far its body
 /// flies in a tick, so that what it will hit is among the pairs. Those that left their fat box will
 /// look anew.
 template <int D>
-static void move_boxes(const StepContext<D>& context, const WorldState<D>& state,
+static void move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                        StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.pair_cache;
+  const int count = static_cast<int>(state.bodies.size());
   scratch.active.assign(state.bodies.size(), 0);
-  scratch.bodies_asleep = 0;
-  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
-    const Body<D>& body = state.bodies[i];
-    if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
-    const std::uint8_t active = is_active(body) ? 1 : 0;
-    scratch.active[i] = active;
-    if (active == 0 && body.inverse_mass > 0.0f) ++scratch.bodies_asleep;
-    if (body.first_shape == kNone) continue;
-    if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
-    const Pose<D> pose{body.position, body.rotation};
-    const float margin =
-        context.tuning.speculative_distance + context.tick_s * length(body.velocity);
-    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
-      cache.active[s] = active;
-      cache.is_still[s] = active ^ 1;
-      cache.boxes[s] = bounds_of(state.shapes[s], pose, margin);
-      if (cache.fat.contains(s) && lies_in(cache.boxes[s], cache.fat.box(s))) continue;
-      cache.fat.put(s, fattened(cache.boxes[s], context.tick_s * body.velocity));
-      if (cache.looks[s] != 0) continue;
-      cache.looks[s] = 1;
-      scratch.looking.push_back(s);
+  scratch.leaving.clear();
+  Tally asleep;
+  const auto move = [&](Range range, std::vector<std::uint32_t>& leaving) {
+    std::uint32_t asleep_here = 0;
+    for (int i = range.begin; i < range.end; ++i) {
+      const Body<D>& body = state.bodies[static_cast<std::size_t>(i)];
+      if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
+      const std::uint8_t active = is_active(body) ? 1 : 0;
+      scratch.active[static_cast<std::size_t>(i)] = active;
+      if (active == 0 && body.inverse_mass > 0.0f) ++asleep_here;
+      if (body.first_shape == kNone) continue;
+      if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
+      move_boxes_of(context, state, body, active, cache, leaving);
     }
+    asleep.add(asleep_here);
+  };
+  list_in_chunks(workers, count, kBodyGrain, scratch.leaving_chunks, scratch.leaving, move);
+  scratch.bodies_asleep = static_cast<std::uint32_t>(asleep.sum());
+  for (const std::uint32_t s : scratch.leaving) {
+    const Body<D>& body = state.bodies[state.shapes[s].body];
+    cache.fat.put(s, fattened(cache.boxes[s], context.tick_s * body.velocity));
+    if (cache.looks[s] != 0) continue;
+    cache.looks[s] = 1;
+    scratch.looking.push_back(s);
   }
   cache.fat.settle();
 }
@@ -146,7 +186,8 @@ static std::uint32_t look(const WorldState<D>& state, const StepScratch<D>& scra
   const auto report = [&](std::uint32_t other) {
     if (may_touch(state, scratch, shape, other)) found.push_back(ordered(shape, other));
   };
-  for (const std::uint32_t half_space : scratch.unbounded) report(half_space);
+  for (const std::uint32_t half_space : scratch.unbounded)
+    if (overlaps(bounds, cache.boxes[half_space])) report(half_space);
   scratch.static_tree.query(bounds, [&](int rank) {
     ++seen;
     report(scratch.static_tree.leaf(rank).id);
@@ -164,14 +205,10 @@ static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tal
                     StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.pair_cache;
   const int count = static_cast<int>(scratch.looking.size());
-  const int chunks = (count + kPairGrain - 1) / kPairGrain;
-  if (scratch.found_candidates.size() < static_cast<std::size_t>(chunks))
-    scratch.found_candidates.resize(static_cast<std::size_t>(chunks));
   for (const std::uint32_t shape : scratch.looking) cache.seen_sum -= cache.seen[shape];
   tally.candidates.add(cache.seen_sum);
-  workers.parallel_for(count, kPairGrain, [&](Range range) {
-    auto& found = scratch.found_candidates[static_cast<std::size_t>(range.begin / kPairGrain)];
-    found.clear();
+  scratch.fresh_candidates.clear();
+  const auto look_all = [&](Range range, std::vector<ShapePair>& found) {
     for (int i = range.begin; i < range.end; ++i) {
       if (tally.is_over()) return;
       const std::uint32_t shape = scratch.looking[static_cast<std::size_t>(i)];
@@ -180,15 +217,12 @@ static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tal
       tally.pairs.add(found.size() - before);
       tally.candidates.add(cache.seen[shape]);
     }
-  });
+  };
+  list_in_chunks(workers, count, kPairGrain, scratch.pair_chunks, scratch.fresh_candidates,
+                 look_all);
   if (tally.is_over()) return false;
   for (const std::uint32_t shape : scratch.looking) cache.seen_sum += cache.seen[shape];
-  scratch.fresh_candidates.clear();
-  for (int i = 0; i < chunks; ++i) {
-    const auto& found = scratch.found_candidates[static_cast<std::size_t>(i)];
-    scratch.fresh_candidates.insert(scratch.fresh_candidates.end(), found.begin(), found.end());
-  }
-  // Total order: a pair of slots is found once.
+  // Total order: the key is the whole pair, so what is equal is the same bytes.
   std::sort(scratch.fresh_candidates.begin(), scratch.fresh_candidates.end(),
             [](const ShapePair& a, const ShapePair& b) { return a.key() < b.key(); });
   return true;
@@ -241,13 +275,20 @@ static void merge_candidates(StepScratch<D>& scratch) {
 
 /// The candidates whose boxes overlap now and of which one takes part.
 template <int D>
-static void list_pairs(StepScratch<D>& scratch) {
+static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
+  constexpr int kCandidateGrain = 1024;
   const PairCache<D>& cache = scratch.pair_cache;
   scratch.pairs.clear();
-  for (const ShapePair& pair : cache.candidates)
-    if ((cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0 &&
-        overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]))
-      scratch.pairs.push_back(pair);
+  const auto list = [&](Range range, std::vector<ShapePair>& pairs) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const ShapePair& pair = cache.candidates[static_cast<std::size_t>(i)];
+      if ((cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0 &&
+          overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]))
+        pairs.push_back(pair);
+    }
+  };
+  list_in_chunks(workers, static_cast<int>(cache.candidates.size()), kCandidateGrain,
+                 scratch.pair_chunks, scratch.pairs, list);
 }
 
 /// Every pair of shapes whose boxes overlap and that may touch; those of bodies that can move are
@@ -268,7 +309,7 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
     start_anew(state, scratch);
   else if (!cache.forgotten.empty())
     forget_changed(state, scratch);
-  move_boxes(context, state, scratch);
+  move_boxes(context, state, workers, scratch);
   if (!scratch.looking.empty()) {
     // Each pair of boxes that overlap was seen by one of the two at least. So with this bound a
     // tick that is within it is also within the bound of a crowd.
@@ -279,7 +320,7 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
       return false;
     merge_candidates(scratch);
   }
-  list_pairs(scratch);
+  list_pairs(workers, scratch);
   return true;
 }
 

@@ -82,8 +82,7 @@ static bool is_held_as_before(StepScratch<D>& scratch) {
 }
 
 template <int D, int W>
-static void list_pairs_of(const ContactBlock<D, W>& block, int place,
-                          std::vector<HeldPair>& held) {
+static void list_pairs_of(const ContactBlock<D, W>& block, int place, std::vector<HeldPair>& held) {
   for (int lane = 0; lane < kLaneCount<W>; ++lane) {
     const LaneBits bit = LaneBits{1} << lane;
     if ((block.has_point[0] & bit) == 0) continue;

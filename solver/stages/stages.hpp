@@ -91,9 +91,9 @@ void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch);
 /// The first body that would leave the bounds, or a fault with field kFaultNone.
 template <int D>
-Fault find_fault(const WorldState<D>& state, const StepScratch<D>& scratch);
+Fault find_fault(const WorldState<D>& state, Workers& workers, const StepScratch<D>& scratch);
 template <int D>
-void finalize(StepScratch<D>& scratch, WorldState<D>& state);
+void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state);
 template <int D>
 void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state);
 

@@ -1,0 +1,27 @@
+#pragma once
+
+#include <vector>
+
+#include "solver/workers.hpp"
+
+namespace cycloid::solver {
+
+/// Appends to `out` what `list(range, list_of_range)` lists for ranges that cover [0, count), in
+/// their order. One thread lists all at once into `out`; of several each fills lists of its own,
+/// the `chunks`, which keep their memory for the next time. So threads cannot be seen, as long as
+/// what a range lists does not depend on where it begins.
+template <class T, class List>
+void list_in_chunks(Workers& workers, int count, int grain, std::vector<std::vector<T>>& chunks,
+                    std::vector<T>& out, List&& list) {
+  if (workers.count() == 1 || count <= grain) return list(Range{0, count}, out);
+  const auto used = static_cast<std::size_t>((count + grain - 1) / grain);
+  if (chunks.size() < used) chunks.resize(used);
+  workers.parallel_for(count, grain, [&](Range range) {
+    std::vector<T>& chunk = chunks[static_cast<std::size_t>(range.begin / grain)];
+    chunk.clear();
+    list(range, chunk);
+  });
+  for (std::size_t i = 0; i < used; ++i) out.insert(out.end(), chunks[i].begin(), chunks[i].end());
+}
+
+}  // namespace cycloid::solver
