@@ -8,8 +8,10 @@
 #include "bench/trials/expected.hpp"
 #include "bench/trials/judges.hpp"
 #include "bench/trials/methods.hpp"
+#include "bench/trials/shares.hpp"
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/trial_shares.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -17,10 +19,9 @@ namespace {
 struct TrialsOptions {
   std::vector<std::string> names;
   std::vector<std::string> methods;
-  std::string check;
-  std::string write;
   bool large = false;
-  bool markdown = false;
+  Sampling sampling;
+  TrialsOutput output;
 };
 
 std::vector<scenes::Trial> chosen_trials(const TrialsOptions& options) {
@@ -57,20 +58,26 @@ std::vector<trials::Method> chosen_methods(const TrialsOptions& options) {
   return found;
 }
 
-trials::ExpectedTable read_table(const std::string& file) {
+/// @param option  which names the file.
+trials::ExpectedTable read_table(const std::string& option, const std::string& file) {
   std::ifstream stream(file);
   if (!stream) throw Failure(kExitIo, file + " cannot be read");
   const std::string text{std::istreambuf_iterator<char>(stream), {}};
   trials::ExpectedTable table;
   std::string mistake;
-  if (!trials::read_expected(text, table, mistake))
-    throw Failure(kExitUsage, file + ": " + mistake);
+  if (!trials::read_expected(text, table, mistake)) {
+    trials::ShareTable shares;
+    std::string other;
+    if (trials::read_shares(text, shares, other))
+      mistake = "is a table of shares; say --perturb " + std::to_string(shares.runs) +
+                ", or name a table of single outcomes";
+    throw Failure(kExitUsage, option + ": " + file + ": " + mistake);
+  }
   return table;
 }
 
 /// @returns how many outcomes are not those of the file.
-int compare(const trials::ExpectedTable& table, const std::string& file) {
-  const trials::ExpectedTable expected = read_table(file);
+int compare(const trials::ExpectedTable& table, const trials::ExpectedTable& expected) {
   int different = 0;
   for (const auto& [key, outcome] : table) {
     const auto found = expected.find(key);
@@ -83,9 +90,10 @@ int compare(const trials::ExpectedTable& table, const std::string& file) {
 }
 
 /// The file's outcomes with these in place of those of the same trial and method.
-void write_table(const trials::ExpectedTable& table, const std::string& file) {
+void write_table(const trials::ExpectedTable& table, trials::ExpectedTable written,
+                 const std::string& file) {
   trials::ExpectedTable whole = table;
-  if (std::filesystem::exists(file)) whole.merge(read_table(file));
+  whole.merge(written);
   std::ofstream stream(file, std::ios::trunc);
   stream << trials::expected_text(whole);
   if (!stream.flush()) throw Failure(kExitIo, file + " cannot be written");
@@ -98,11 +106,18 @@ Json json_of(const trials::ExpectedTable& table) {
   return outcomes;
 }
 
-Exit run_trials(const TrialsOptions& options, bool json) {
+Exit run_single(const std::vector<scenes::Trial>& chosen,
+                const std::vector<trials::Method>& methods, const TrialsOutput& output) {
+  // Both files are read before the first run: a wrong one must not cost minutes.
+  trials::ExpectedTable expected;
+  if (!output.check.empty()) expected = read_table("--check", output.check);
+  trials::ExpectedTable written;
+  if (!output.write.empty() && std::filesystem::exists(output.write))
+    written = read_table("--write", output.write);
+
   trials::ExpectedTable table;
-  const auto methods = chosen_methods(options);
-  const bool prints = !json && !options.markdown;
-  for (const scenes::Trial& trial : chosen_trials(options)) {
+  const bool prints = !output.json && !output.markdown;
+  for (const scenes::Trial& trial : chosen) {
     if (prints)
       std::cout << trial.row << " " << trial.name << ": " << trials::judge_of(trial).metric << '\n';
     for (const trials::Method& method : methods) {
@@ -112,12 +127,21 @@ Exit run_trials(const TrialsOptions& options, bool json) {
         std::cout << "  " << std::left << std::setw(14) << method.name << outcome << std::endl;
     }
   }
-  const int different = options.check.empty() ? 0 : compare(table, options.check);
-  if (!options.write.empty()) write_table(table, options.write);
+  const int different = output.check.empty() ? 0 : compare(table, expected);
+  if (!output.write.empty()) write_table(table, std::move(written), output.write);
   const Exit exit = different == 0 ? kExitGood : kExitDiverged;
-  if (json) print_json({{"outcomes", json_of(table)}, {"different", different}}, exit);
-  if (options.markdown) std::cout << trials::expected_markdown(table);
+  if (output.json) print_json({{"outcomes", json_of(table)}, {"different", different}}, exit);
+  if (output.markdown) std::cout << trials::expected_markdown(table);
   return exit;
+}
+
+Exit run_trials(const TrialsOptions& options, bool json) {
+  TrialsOutput output = options.output;
+  output.json = json;
+  const std::vector<scenes::Trial> chosen = chosen_trials(options);
+  const std::vector<trials::Method> methods = chosen_methods(options);
+  if (options.sampling.runs == 0) return run_single(chosen, methods, output);
+  return run_shares(chosen, methods, options.sampling, output);
 }
 
 }  // namespace
@@ -129,10 +153,30 @@ void add_trials(CLI::App& app, Action& action) {
       "Run the scenes in which methods fail, under every method; 1 if --check differs", action);
   command->add_option("NAME", options->names, "Which; none: all");
   command->add_option("--method", options->methods, "Only these methods");
-  command->add_option("--check", options->check, "Compare with this table of outcomes");
-  command->add_option("--write", options->write, "Write the outcomes into this table");
+  command->add_option("--check", options->output.check,
+                      "Compare with this table of outcomes, or of shares");
+  command->add_option("--write", options->output.write,
+                      "Write the outcomes, or shares, into this table");
   command->add_flag("--large", options->large, "Also those that take minutes");
-  command->add_flag("--markdown", options->markdown, "Print the table of docs/stability.md");
+  command->add_flag("--markdown", options->output.markdown,
+                    "Print a table as in docs/stability.md");
+  Sampling& sampling = options->sampling;
+  CLI::Option* perturb =
+      command
+          ->add_option("--perturb", sampling.runs,
+                       "Run each so often, all but the first with every velocity changed by up to "
+                       "1 mm/s; count what stands, sags and fails")
+          ->check(CLI::Range(1, 100'000));
+  command->add_option("--seed", sampling.seed, "Of the changes of --perturb")
+      ->capture_default_str()
+      ->check([](const std::string& word) {  // Else it would wrap around.
+        return std::string(word.starts_with('-') ? "a seed is a whole number from 0" : "");
+      })
+      ->needs(perturb);
+  command->add_option("--jobs", sampling.jobs, "Runs of --perturb side by side")
+      ->capture_default_str()
+      ->check(CLI::Range(1, 256))
+      ->needs(perturb);
   command->callback([options, &action] {
     action.run = [=, &action] { return run_trials(*options, action.json); };
   });

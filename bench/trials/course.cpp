@@ -138,11 +138,15 @@ static Course run(const scenes::Scene& scene, std::uint32_t ticks, Act<D> act) {
   return watch.finish(world.state(), ended);
 }
 
-Course run_trial(const scenes::Trial& trial, const solver::Tuning& method, Act<2> act) {
-  scenes::Scene scene = trial.make();
+Course run_scene(scenes::Scene scene, std::uint32_t ticks, const solver::Tuning& method,
+                 Act<2> act) {
   scene.tuning = with_method(scene.tuning, method);
-  if (scene.dimension == 3) return run<3>(scene, trial.ticks, nullptr);
-  return run<2>(scene, trial.ticks, act);
+  if (scene.dimension == 3) return run<3>(scene, ticks, nullptr);
+  return run<2>(scene, ticks, act);
+}
+
+Course run_trial(const scenes::Trial& trial, const solver::Tuning& method, Act<2> act) {
+  return run_scene(trial.make(), trial.ticks, method, act);
 }
 
 }  // namespace cycloid::trials

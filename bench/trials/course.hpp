@@ -69,6 +69,8 @@ template <int D>
 using Act = void (*)(solver::World<D>& world, std::uint32_t tick);
 
 /// Runs it from the start. @pre the scene is good, as `scenes::trials()` makes them.
+Course run_scene(scenes::Scene scene, std::uint32_t ticks, const solver::Tuning& method,
+                 Act<2> act);
 Course run_trial(const scenes::Trial& trial, const solver::Tuning& method, Act<2> act);
 
 }  // namespace cycloid::trials

@@ -7,6 +7,14 @@
 
 namespace cycloid::trials {
 
+/// Tells an outcome from what stands there in a table of shares.
+static bool begins_with_verdict(const std::string& outcome) {
+  const std::string word = outcome.substr(0, outcome.find(' '));
+  for (const Verdict verdict : {Verdict::kStands, Verdict::kSags, Verdict::kFails})
+    if (word == verdict_name(verdict)) return true;
+  return false;
+}
+
 bool read_expected(std::string_view text, ExpectedTable& table, std::string& mistake) {
   ExpectedTable read;
   std::istringstream lines{std::string(text)};
@@ -19,7 +27,7 @@ bool read_expected(std::string_view text, ExpectedTable& table, std::string& mis
     std::string outcome;
     words >> trial >> method >> std::ws;
     std::getline(words, outcome);
-    const bool whole = !trial.empty() && !method.empty() && !outcome.empty();
+    const bool whole = !trial.empty() && !method.empty() && begins_with_verdict(outcome);
     if (whole && read.emplace(std::pair(trial, method), outcome).second) continue;
     mistake = "line " + std::to_string(number) +
               (whole ? ": said twice" : ": not of the form 'trial method outcome'");

@@ -93,6 +93,8 @@ TEST(Trials, ATableThatIsNoneIsRefusedByLine) {
   EXPECT_EQ(mistake, "line 1: not of the form 'trial method outcome'");
   EXPECT_FALSE(read_expected("a b fails\na b stands 1\n", table, mistake));
   EXPECT_EQ(mistake, "line 2: said twice");
+  EXPECT_FALSE(read_expected("a b 20 0 0 0.1 0.2\n", table, mistake)) << "a row of shares";
+  EXPECT_EQ(mistake, "line 1: not of the form 'trial method outcome'");
   EXPECT_EQ(table.size(), 1u) << "a refused table changes nothing";
 }
 
