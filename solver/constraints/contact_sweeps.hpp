@@ -109,20 +109,30 @@ void ContactKernels<D, W>::warm_start(const BlockRange<D, W>& range) {
   }
 }
 
-/// Blocks of the plain rows: each point's normal, then each point's friction.
-template <Sweep kSweep, int D, int W>
+/// Blocks of the plain rows: each point's normal, then each point's friction. Two at a time, row by
+/// row in turn: each row waits for the one before it in its own block, and blocks of one colour
+/// share no body that moves, so the rows of one fill the time that those of the other wait.
+template <Sweep kSweep, int D, int W, int kBlocks>
 [[gnu::always_inline]] inline void sweep_plain(const StepContext<D>& context,
                                                const BlockRange<D, W>& range,
-                                               ContactBlock<D, W>& block) {
-  MotionLanes<D, W> a;
-  MotionLanes<D, W> b;
-  gather_pair(range, block, a, b);
-  for (std::uint32_t i = 0; i < block.point_count; ++i)
-    solve_normal(context, kSweep, block, block.points[i], a, b);
-  if (block.rubs)
-    for (std::uint32_t i = 0; i < block.point_count; ++i)
-      solve_friction(context, block, block.points[i], block.points[i].arms, a, b);
-  scatter_pair(range, block, a, b);
+                                               ContactBlock<D, W>* blocks) {
+  MotionLanes<D, W> a[kBlocks];
+  MotionLanes<D, W> b[kBlocks];
+  std::uint32_t points = 0;
+  for (int k = 0; k < kBlocks; ++k) {
+    gather_pair(range, blocks[k], a[k], b[k]);
+    points = points < blocks[k].point_count ? blocks[k].point_count : points;
+  }
+  for (std::uint32_t i = 0; i < points; ++i)
+    for (int k = 0; k < kBlocks; ++k)
+      if (i < blocks[k].point_count)
+        solve_normal(context, kSweep, blocks[k], blocks[k].points[i], a[k], b[k]);
+  for (std::uint32_t i = 0; i < points; ++i)
+    for (int k = 0; k < kBlocks; ++k)
+      if (blocks[k].rubs && i < blocks[k].point_count)
+        solve_friction(context, blocks[k], blocks[k].points[i], blocks[k].points[i].arms, a[k],
+                       b[k]);
+  for (int k = 0; k < kBlocks; ++k) scatter_pair(range, blocks[k], a[k], b[k]);
 }
 
 /// Every other block. Apart, because its calls would keep the motions of all blocks in memory.
@@ -171,15 +181,23 @@ void sweep_blocks(const StepContext<D>& context, const BlockRange<D, W>& range) 
   const ContactBlockRows together = context.tuning.contact_block;
   const bool apart = together == ContactBlockRows::kNone || together >= ContactBlockRows::kIsland;
   const bool plain = kSweep != Sweep::kPseudo && apart;
+  const auto is_plain = [&](const ContactBlock<D, W>* block) {
+    return block != range.end && plain && !block->rolls &&
+           (kSweep != Sweep::kBiased || block->settled == 0);
+  };
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
-    if (kSweep == Sweep::kBiased && block->settled != 0) {
-      if (block->settled != kAllLanes<W>) sweep_partly(context, range, *block);
-      continue;
-    }
-    if (plain && !block->rolls)
-      sweep_plain<kSweep>(context, range, *block);
-    else
+    if (is_plain(block)) {
+      if (is_plain(block + 1)) {
+        sweep_plain<kSweep, D, W, 2>(context, range, block);
+        ++block;
+      } else {
+        sweep_plain<kSweep, D, W, 1>(context, range, block);
+      }
+    } else if (kSweep != Sweep::kBiased || block->settled == 0) {
       sweep_any(context, kSweep, range, *block);
+    } else if (block->settled != kAllLanes<W>) {
+      sweep_partly(context, range, *block);
+    }
   }
 }
 
