@@ -132,10 +132,20 @@ Loaded load(const std::string& what, Untuned untuned) {
 }
 
 std::vector<Scene> generated_defaults() {
-  std::vector<Scene> scenes = {
-      half_pipe(),  newtons_cradle(),   ragdoll_motors(),     vehicle(),     machines(),
-      beads(),      rolling(),          heavy_on_light(),     dzhanibekov(), top(),
-      vehicle_3d(), character_course(), character_course_3d()};
+  std::vector<Scene> scenes = {half_pipe(),
+                               newtons_cradle(),
+                               ragdoll_motors(),
+                               vehicle(),
+                               machines(),
+                               beads(),
+                               rolling(),
+                               heavy_on_light(),
+                               dzhanibekov(),
+                               top(),
+                               vehicle_3d(),
+                               character_course(),
+                               character_course_3d(),
+                               within_a_millimetre()};
   for (Scene& scene : method_scenes()) scenes.push_back(std::move(scene));
   for (const Generator& generator : kGenerators)
     scenes.push_back(generator.make(generator.standard));

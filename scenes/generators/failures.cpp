@@ -77,6 +77,56 @@ Scene heavy_on_light() {
   return scene;
 }
 
+/// Six boxes under one of fifty times their density.
+static void add_loaded_stack(Scene& scene) {
+  for (int i = 0; i < 7; ++i) {
+    const Triple at = {0.0f, 0.25f + 0.5f * static_cast<float>(i), 0.0f};
+    scene.bodies.push_back(body_at(i < 6 ? "" : "load", at, box_shape(0.25f, 0.25f)));
+  }
+  scene.bodies.back().shapes[0].density = 50.0f;
+}
+
+/// Five links that hang from the frame, and a weight of twenty times their density.
+static void add_hanging_weight(Scene& scene) {
+  std::string before = "frame";
+  Triple pivot = {4.0f, 6.0f, 0.0f};
+  for (int i = 0; i < 5; ++i) {
+    const std::string name = "link-" + std::to_string(i);
+    const Triple at = {4.0f, 5.75f - 0.5f * static_cast<float>(i), 0.0f};
+    scene.bodies.push_back(
+        body_at(name, at, capsule_shape({0.0f, -0.2f, 0.0f}, {0.0f, 0.2f, 0.0f}, 0.05f)));
+    scene.joints.push_back(
+        joint_between(JointKind::kRevolute, before, pivot, name, {0.0f, 0.25f, 0.0f}));
+    before = name;
+    pivot = {0.0f, -0.25f, 0.0f};
+  }
+  SceneBody weight = body_at("weight", {4.0f, 3.0f, 0.0f}, ball_shape(0.5f));
+  weight.shapes[0].density = 20.0f;
+  scene.bodies.push_back(weight);
+  scene.joints.push_back(
+      joint_between(JointKind::kRevolute, before, pivot, "weight", {0.0f, 0.5f, 0.0f}));
+}
+
+// States how wrong it may be, and no method: the one that this takes lies in the catalogue's file,
+// where `cycloid tune --write` has stored it.
+Scene within_a_millimetre() {
+  Scene scene = planar_scene(
+      "within-a-millimetre",
+      "A loaded stack and a weight on a chain, which state how wrong they may be and no method.");
+  scene.accuracy.error_m = 1.0e-3f;
+  scene.bodies.push_back(ground());
+  scene.bodies.push_back(frame());
+  add_loaded_stack(scene);
+  add_hanging_weight(scene);
+  Seat seat;
+  seat.name = "pusher";
+  seat.controls.push_back(force_control(0, "weight", {40.0f, 0.0f, 0.0f}));
+  seat.controls.push_back(force_control(1, "load", {0.0f, -100.0f, 0.0f}));
+  seat.script.push_back({60, 0, 240, 30, {1.0f, 1.0f, 0.0f, 0.0f}, 0});
+  scene.seats.push_back(seat);
+  return scene;
+}
+
 // Source of the measures: Catto's Solver2D (2024), Overlap Recovery: neighbours share a quarter of
 // their width, and are to part gently instead of being shot out.
 Scene overlap(int base) {

@@ -26,6 +26,7 @@ Scene bouncing(int discs);
 /// @param links  capsules of 5.98 kg each, 1 to 400, with a ball of 4021 kg at the end.
 Scene chain_and_ball(int links);
 Scene heavy_on_light();
+Scene within_a_millimetre();
 Scene overlap(int base);
 /// The same small scene under each method that is not the default: "method-pgs" and so on.
 std::vector<Scene> method_scenes();

@@ -52,8 +52,7 @@ struct ContactKernels {
   /// What the warm start has left to do: ContactBlock::misses and stirs.
   static void look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
                             const BlockRange<D, W>& range);
-  /// One sweep of sequential impulses. @pre no two blocks share a body that moves: two are solved at
-  /// a time.
+  /// One sweep of sequential impulses, two blocks at a time. @pre no two share a body that moves.
   static void sweep(const StepContext<D>& context, Sweep kind, const BlockRange<D, W>& range);
   /// One sweep on positions (correct_contact).
   static void correct(const StepContext<D>& context, const BlockRange<D, W>& range);

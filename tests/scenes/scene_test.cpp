@@ -7,6 +7,7 @@
 #include <limits>
 #include <sstream>
 
+#include "scenes/accuracy.hpp"
 #include "scenes/catalogue.hpp"
 
 namespace cycloid::scenes {
@@ -65,10 +66,12 @@ TEST(Json, ToBinaryToJsonIsTheIdentityForEveryScene) {
 }
 
 TEST(Catalogue, FilesAreTheExportsOfTheirRules) {
-  for (const Scene& scene : generated_defaults()) {
+  for (Scene scene : generated_defaults()) {
     std::ifstream file(std::string(CYCLOID_SOURCE_DIR "/scenes/catalogue/") + scene.name + ".json");
     std::stringstream text;
     text << file.rdbuf();
+    // No rule knows the method of a scene that asks for an accuracy: `cycloid tune` has stored it.
+    if (states_accuracy(scene)) scene.accuracy.tuned = find(scene.name).scene->accuracy.tuned;
     EXPECT_EQ(text.str(), to_json(scene)) << scene.name;
   }
   EXPECT_EQ(generated_defaults().size(), catalogue().size());

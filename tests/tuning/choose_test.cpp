@@ -106,6 +106,19 @@ TEST(ChooseSetting, MeetsItsErrorWhenTheStoredSceneIsMeasuredAgain) {
       << "the stored scene runs with the setting that was measured";
 }
 
+/// Goal: what the catalogue stores is what this solver chooses; `cycloid tune
+/// scenes/catalogue/NAME.json --write` stores it anew.
+TEST(ChooseSetting, CatalogueHoldsWhatIsChosenForTheSceneThatStatesNoMethod) {
+  const scenes::Scene scene = *scenes::find("within-a-millimetre").scene;
+  TuneRequest request;
+  request.error_m = error_of(*asked_by(scene), scene);
+  const TuneResult result = choose(scene, request);
+  ASSERT_TRUE(result.chosen);
+  scenes::Scene chosen = scene;
+  scenes::store_choice(chosen, result.tried[*result.chosen].tuning);
+  EXPECT_EQ(scenes::to_json(chosen), scenes::to_json(scene));
+}
+
 TEST(ChooseSetting, OfTheImpossibleIsNothingAndNamesTheNearest) {
   const TuneResult result = choose(column(), small_request(1.0e-9));
   EXPECT_FALSE(result.chosen);
