@@ -105,7 +105,10 @@ bool takes_box2d3_polygons(const solver::WorldState<2>& state) {
 
 /// What every definition begins with. The frame of `a` is turned by `axis_a`, and that of `b` so
 /// that both agree where the joint is at rest.
-static void set_base(b2JointDef& base, const solver::Joint<2>& joint, b2Rot axis_a) {
+static void set_base(b2JointDef& base, const solver::Joint<2>& joint, b2BodyId a, b2BodyId b,
+                     b2Rot axis_a) {
+  base.bodyIdA = a;
+  base.bodyIdB = b;
   const b2Rot reference = {joint.reference[0], joint.reference[1]};
   base.localFrameA = {to_box2d3(joint.anchor_a), axis_a};
   base.localFrameB = {to_box2d3(joint.anchor_b), b2InvMulRot(reference, axis_a)};
@@ -114,9 +117,7 @@ static void set_base(b2JointDef& base, const solver::Joint<2>& joint, b2Rot axis
 
 static b2JointId add_pin(const solver::Joint<2>& joint, b2BodyId a, b2BodyId b, b2WorldId world) {
   b2RevoluteJointDef def = b2DefaultRevoluteJointDef();
-  set_base(def.base, joint, b2Rot_identity);
-  def.base.bodyIdA = a;
-  def.base.bodyIdB = b;
+  set_base(def.base, joint, a, b, b2Rot_identity);
   def.enableLimit = joint.limit_enabled != 0;
   def.lowerAngle = joint.lower;
   def.upperAngle = joint.upper;
@@ -128,9 +129,7 @@ static b2JointId add_pin(const solver::Joint<2>& joint, b2BodyId a, b2BodyId b, 
 
 static b2JointId add_slide(const solver::Joint<2>& joint, b2BodyId a, b2BodyId b, b2WorldId world) {
   b2PrismaticJointDef def = b2DefaultPrismaticJointDef();
-  set_base(def.base, joint, {joint.axis[0], joint.axis[1]});
-  def.base.bodyIdA = a;
-  def.base.bodyIdB = b;
+  set_base(def.base, joint, a, b, {joint.axis[0], joint.axis[1]});
   def.enableLimit = joint.limit_enabled != 0;
   def.lowerTranslation = joint.lower;
   def.upperTranslation = joint.upper;
@@ -143,9 +142,7 @@ static b2JointId add_slide(const solver::Joint<2>& joint, b2BodyId a, b2BodyId b
 static b2JointId add_rod(const solver::Joint<2>& joint, b2BodyId a, b2BodyId b, b2WorldId world) {
   const bool rope = joint.limit_enabled != 0;
   b2DistanceJointDef def = b2DefaultDistanceJointDef();
-  set_base(def.base, joint, b2Rot_identity);
-  def.base.bodyIdA = a;
-  def.base.bodyIdB = b;
+  set_base(def.base, joint, a, b, b2Rot_identity);
   def.length = joint.length;
   def.enableLimit = rope;
   def.minLength = rope ? joint.lower : joint.length;
@@ -159,9 +156,7 @@ static b2JointId add_rod(const solver::Joint<2>& joint, b2BodyId a, b2BodyId b, 
 
 static b2JointId add_weld(const solver::Joint<2>& joint, b2BodyId a, b2BodyId b, b2WorldId world) {
   b2WeldJointDef def = b2DefaultWeldJointDef();
-  set_base(def.base, joint, b2Rot_identity);
-  def.base.bodyIdA = a;
-  def.base.bodyIdB = b;
+  set_base(def.base, joint, a, b, b2Rot_identity);
   return b2CreateWeldJoint(world, &def);
 }
 

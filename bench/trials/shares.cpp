@@ -31,7 +31,8 @@ Shares shares_of(std::span<const Outcome> outcomes) {
     const bool has_number = outcome.ended && std::isfinite(outcome.value);
     values.push_back(has_number ? outcome.value : kNoNumber);
   }
-  std::sort(values.begin(), values.end());
+  // Stable: 0 and -0 are equal and print differently; the order of the runs is one everywhere.
+  std::stable_sort(values.begin(), values.end());
   shares.median = number_text(values[values.size() / 2]);
   shares.worst = number_text(values.back());
   return shares;
