@@ -13,6 +13,7 @@
 #include "solver/direct/tree_solver.hpp"
 #include "solver/motion.hpp"
 #include "solver/particles/move_particles.hpp"
+#include "solver/queries/time_of_impact.hpp"
 #include "solver/state.hpp"
 #include "solver/workers.hpp"
 
@@ -55,6 +56,15 @@ RowsFunction<D> find_rows_function(const std::vector<UserRows<D>>& registered,
   return nullptr;
 }
 
+/// A body that moves so far in a tick that it could pass through something.
+template <int D>
+struct FastBody {
+  std::uint32_t slot;
+  BodySweep<D> sweep;
+  bool is_pushed = false;  ///< Something behind it moves it on.
+  float stop = 1.0f;       ///< The fraction of the tick at which it stops.
+};
+
 /// What a world keeps from one step to the next beside its state: what it was told, and caches that
 /// are functions of the state alone and change no result.
 template <int D>
@@ -88,6 +98,7 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::vector<std::vector<std::uint32_t>> leaving_chunks;
   std::vector<std::vector<ShapePair>> pair_chunks;
   std::vector<ShapePair> fresh_candidates;  ///< Of those that look, sorted by key.
+  std::vector<ShapePair> sorted_pairs;      ///< For sort_pairs to work in.
   std::vector<ShapePair> pairs;             ///< Sorted by key.
   std::vector<ContactList<D>> contact_chunks;
 
@@ -117,7 +128,13 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   IslandSolver<D> islands_solved;
   std::vector<float> tree_wanted;
   std::vector<float> tree_impulses;
-  std::vector<float> stops;  ///< Of awake_bodies: the fraction of the tick at which one stops.
+  std::vector<FastBody<D>> fast_bodies;  ///< In slot order.
+  std::vector<std::vector<FastBody<D>>> fast_chunks;
+  std::vector<std::uint32_t> fast_of_shape;  ///< By shape: place in fast_bodies + 1, or 0.
+  std::vector<Bounds<D>> ways;               ///< By shape, of those of fast bodies.
+  std::vector<std::uint32_t> searching;      ///< Shapes whose way leaves their fat box.
+  std::vector<ShapePair> meetings;           ///< Which may meet on the way of a fast body.
+  std::vector<float> fractions;              ///< Of meetings: of the tick, at which they do.
   ParticleScratch<D> particles;
   WorldState<D> before;  ///< Of worlds with particles, to undo a tick that faults.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>,

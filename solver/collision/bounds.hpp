@@ -11,10 +11,12 @@ struct Bounds {
   Vec<D> lower;
   Vec<D> upper;
 
+  /// Without a branch for each side: of pairs that are near it is anybody's guess.
   friend bool overlaps(const Bounds& a, const Bounds& b) {
+    bool apart = false;
     for (int i = 0; i < D; ++i)
-      if (a.lower[i] > b.upper[i] || b.lower[i] > a.upper[i]) return false;
-    return true;
+      apart = apart | (a.lower[i] > b.upper[i]) | (b.lower[i] > a.upper[i]);
+    return !apart;
   }
   friend Bounds merged(Bounds a, const Bounds& b) {
     for (int i = 0; i < D; ++i) {

@@ -2,9 +2,11 @@
 
 namespace cycloid::solver {
 
-/// Beyond so many, and a share of all, a tree is faster than rows.
-static constexpr std::uint32_t kLooseMax = 256;
-static constexpr std::uint32_t kLooseShare = 16;
+/// Beyond so many boxes a small tree is faster than rows.
+static constexpr std::uint32_t kRowsMax = 256;
+/// Beyond so many that changed since it was made, and a share of all, the great tree is made anew.
+static constexpr std::uint32_t kChangedMax = 1024;
+static constexpr std::uint32_t kChangedShare = 8;
 
 template <int D>
 void BoxSet<D>::clear() {
@@ -14,7 +16,8 @@ void BoxSet<D>::clear() {
   loose_ = 0;
   count_ = 0;
   leaves_.clear();
-  tree_.build(leaves_);
+  old_.build(leaves_);
+  young_.build(leaves_);
 }
 
 template <int D>
@@ -34,7 +37,7 @@ void BoxSet<D>::put(std::uint32_t id, const Bounds<D>& box) {
   }
   boxes_[id] = box;
   if (home_[id] == kAbsent) ++count_;
-  if (home_[id] < kInTree) return write(home_[id], id, box);
+  if (home_[id] < kInYoung) return write(home_[id], id, box);
   if (loose_ % 4 == 0) rows_.push_back({BoundsRow<D>::empty(), {}});
   write(loose_++, id, box);
 }
@@ -56,24 +59,50 @@ template <int D>
 void BoxSet<D>::remove(std::uint32_t id) {
   if (!contains(id)) return;
   const std::uint32_t home = home_[id];
-  if (home != kInTree) take_out(home);
+  if (home < kInYoung) take_out(home);
   home_[id] = kAbsent;
   --count_;
 }
 
+/// What lies in the small tree and in rows.
 template <int D>
-void BoxSet<D>::settle() {
-  const std::uint32_t share = count_ / kLooseShare;
-  if (loose_ <= (share > kLooseMax ? share : kLooseMax)) return;
+void BoxSet<D>::list_young() {
   leaves_.clear();
-  for (std::uint32_t id = 0; id < home_.size(); ++id) {
-    if (home_[id] == kAbsent) continue;
-    leaves_.push_back({boxes_[id], id});
-    home_[id] = kInTree;
+  for (int rank = 0; rank < young_.size(); ++rank) {
+    const std::uint32_t id = young_.leaf(rank).id;
+    if (home_[id] == kInYoung) leaves_.push_back({boxes_[id], id});
   }
-  tree_.build(leaves_);
+  for (std::uint32_t place = 0; place < loose_; ++place) {
+    const std::uint32_t id = rows_[place / 4].id[place % 4];
+    leaves_.push_back({boxes_[id], id});
+  }
+}
+
+/// The boxes of leaves_ have a new home, and no other is in rows.
+template <int D>
+void BoxSet<D>::forget_rows(Home home) {
+  for (const auto& leaf : leaves_) home_[leaf.id] = home;
   rows_.clear();
   loose_ = 0;
+}
+
+template <int D>
+void BoxSet<D>::settle() {
+  if (loose_ <= kRowsMax) return;
+  list_young();
+  const std::uint32_t share = count_ / kChangedShare;
+  if (leaves_.size() <= (share > kChangedMax ? share : kChangedMax)) {
+    forget_rows(kInYoung);
+    young_.build(leaves_);
+    return;
+  }
+  leaves_.clear();
+  for (std::uint32_t id = 0; id < home_.size(); ++id)
+    if (home_[id] != kAbsent) leaves_.push_back({boxes_[id], id});
+  forget_rows(kInOld);
+  old_.build(leaves_);
+  leaves_.clear();
+  young_.build(leaves_);
 }
 
 template class BoxSet<2>;

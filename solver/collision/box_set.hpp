@@ -8,10 +8,11 @@
 
 namespace cycloid::solver {
 
-/// Boxes by number, to be asked which of them overlap another: those that changed lately lie in
-/// rows of four that a query compares at once, the others in a tree that is made anew when these
-/// have become too many. A small world never has a tree. What is found depends on the boxes alone,
-/// in which order also on the history: whoever asks must not let the order show.
+/// Boxes by number, to be asked which of them overlap another: those that changed last lie in rows
+/// of four that a query compares at once, those that changed lately in a small tree, the others in
+/// a great one. Each tree is made anew when too many have changed since. A small world has rows
+/// alone. What is found depends on the boxes alone, in which order also on the history: whoever
+/// asks must not let the order show.
 template <int D>
 class BoxSet {
  public:
@@ -19,7 +20,7 @@ class BoxSet {
   /// Adds the box of `id`, or changes it.
   void put(std::uint32_t id, const Bounds<D>& box);
   void remove(std::uint32_t id);
-  /// Makes the tree anew where too many boxes changed since the last time; call it after changes.
+  /// Makes a tree anew where too many boxes changed since the last time; call it after changes.
   void settle();
 
   bool contains(std::uint32_t id) const { return id < home_.size() && home_[id] != kAbsent; }
@@ -30,10 +31,13 @@ class BoxSet {
   /// Calls found(id) once for every box that overlaps `bounds`.
   template <class Found>
   void query(const Bounds<D>& bounds, Found&& found) const {
-    tree_.query(bounds, [&](int rank) {
-      const std::uint32_t id = tree_.leaf(rank).id;
-      if (home_[id] == kInTree) found(id);
-    });
+    for (const Home home : {kInOld, kInYoung}) {
+      const BoundsTree<D>& tree = home == kInOld ? old_ : young_;
+      tree.query(bounds, [&](int rank) {
+        const std::uint32_t id = tree.leaf(rank).id;
+        if (home_[id] == home) found(id);
+      });
+    }
     for (const Row& row : rows_)
       for (std::uint32_t lanes = row.boxes.overlapping(bounds); lanes != 0; lanes &= lanes - 1)
         found(row.id[std::countr_zero(lanes)]);
@@ -44,17 +48,20 @@ class BoxSet {
     BoundsRow<D> boxes;
     std::uint32_t id[4];
   };
-  static constexpr std::uint32_t kAbsent = 0xffffffffu;
-  static constexpr std::uint32_t kInTree = 0xfffffffeu;
+  /// Where a box is, if not at a place among the rows. A tree also holds boxes that have left it.
+  enum Home : std::uint32_t { kInYoung = 0xfffffffdu, kInOld, kAbsent };
   void write(std::uint32_t place, std::uint32_t id, const Bounds<D>& box);
   void take_out(std::uint32_t place);
+  void list_young();
+  void forget_rows(Home home);
 
   std::vector<Bounds<D>> boxes_;     ///< By id.
-  std::vector<std::uint32_t> home_;  ///< By id: kAbsent, kInTree, or the place among the rows.
+  std::vector<std::uint32_t> home_;  ///< By id: a Home, or the place among the rows.
   std::vector<Row> rows_;
   std::uint32_t loose_ = 0;  ///< Boxes in rows.
   std::uint32_t count_ = 0;
-  BoundsTree<D> tree_;
+  BoundsTree<D> old_;
+  BoundsTree<D> young_;
   std::vector<typename BoundsTree<D>::Leaf> leaves_;
 };
 

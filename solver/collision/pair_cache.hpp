@@ -14,23 +14,52 @@ struct ShapePair {
   std::uint64_t key() const { return (std::uint64_t{shape_a} << 32) | shape_b; }
 };
 
-/// How far a fat box reaches beyond the box: a share of its size, and the flight of so many ticks
-/// in the direction of the flight. More makes looks rarer and candidates more.
+/// The lengths of a box's sides, summed, m.
+template <int D>
+float size_of(const Bounds<D>& box) {
+  float size = 0.0f;
+  for (int i = 0; i < D; ++i) size += box.upper[i] - box.lower[i];
+  return size;
+}
+
+/// A box that reaches as far again as something flies.
+template <int D>
+Bounds<D> along(Bounds<D> box, const Vec<D>& flight) {
+  for (int i = 0; i < D; ++i) {
+    box.lower[i] += min(flight[i], 0.0f);
+    box.upper[i] += max(flight[i], 0.0f);
+  }
+  return box;
+}
+
+/// How far a fat box reaches beyond the box: a share of its size, and the flight of some ticks.
+/// More makes looks rarer and candidates more.
 inline constexpr float kFatShare = 0.1f;
 inline constexpr float kFatTicks = 10.0f;
 
 /// @param flight  Of a tick, m.
 template <int D>
-Bounds<D> fattened(const Bounds<D>& box, const Vec<D>& flight) {
-  Bounds<D> fat = box;
-  float size = 0.0f;
-  for (int i = 0; i < D; ++i) size += box.upper[i] - box.lower[i];
+Bounds<D> fattened(const Bounds<D>& box, const Vec<D>& flight, float ticks) {
+  Bounds<D> fat = along(box, ticks * flight);
+  const float share = kFatShare * size_of(box);
   for (int i = 0; i < D; ++i) {
-    const float ahead = kFatTicks * flight[i];
-    fat.lower[i] -= kFatShare * size - min(ahead, 0.0f);
-    fat.upper[i] += kFatShare * size + max(ahead, 0.0f);
+    fat.lower[i] -= share;
+    fat.upper[i] += share;
   }
   return fat;
+}
+
+/// Of how many ticks the flight is: fewer for a shape whose last look met many.
+inline float fat_ticks(std::uint32_t seen) {
+  constexpr float kFew = 12.0f;
+  return kFatTicks * min(1.0f, kFew / static_cast<float>(seen + 1));
+}
+/// Of one that has not looked yet: no farther than it is large, for it may be one of a crowd.
+template <int D>
+float first_fat_ticks(const Bounds<D>& box, const Vec<D>& flight) {
+  const float size = size_of(box);
+  const float way = length(flight);
+  return way * kFatTicks <= size ? kFatTicks : size / way;
 }
 
 /// What `find_pairs` keeps from tick to tick to find the same pairs with less work. A pure cache:

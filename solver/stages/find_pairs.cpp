@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <limits>
 
+#include "solver/collision/sort_pairs.hpp"
 #include "solver/stages/in_chunks.hpp"
 #include "solver/stages/may_touch.hpp"
 #include "solver/stages/stages.hpp"
@@ -125,18 +126,19 @@ static void move_boxes_of(const StepContext<D>& context, const WorldState<D>& st
                           const Body<D>& body, std::uint8_t active, PairCache<D>& cache,
                           std::vector<std::uint32_t>& leaving) {
   const Pose<D> pose{body.position, body.rotation};
-  const float margin = context.tuning.speculative_distance + context.tick_s * length(body.velocity);
+  const Vec<D> flight = context.tick_s * body.velocity;
   for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
     cache.active[s] = active;
     cache.is_still[s] = active ^ 1;
-    cache.boxes[s] = bounds_of(state.shapes[s], pose, margin);
+    cache.boxes[s] =
+        along(bounds_of(state.shapes[s], pose, context.tuning.speculative_distance), flight);
     if (!cache.fat.contains(s) || !lies_in(cache.boxes[s], cache.fat.box(s))) leaving.push_back(s);
   }
 }
 
-/// The box of each shape that can move: widened by the speculative distance and by how far its body
-/// flies in a tick, so that what it will hit is among the pairs. Those that left their fat box will
-/// look anew.
+/// The box of each shape that can move: widened by the speculative distance and along its body's
+/// flight of a tick, so that what it will hit is among the pairs. Those that left their fat box
+/// will look anew.
 template <int D>
 static void move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                        StepScratch<D>& scratch) {
@@ -163,7 +165,10 @@ static void move_boxes(const StepContext<D>& context, const WorldState<D>& state
   scratch.bodies_asleep = static_cast<std::uint32_t>(asleep.sum());
   for (const std::uint32_t s : scratch.leaving) {
     const Body<D>& body = state.bodies[state.shapes[s].body];
-    cache.fat.put(s, fattened(cache.boxes[s], context.tick_s * body.velocity));
+    const Vec<D> flight = context.tick_s * body.velocity;
+    const float ticks =
+        cache.fat.contains(s) ? fat_ticks(cache.seen[s]) : first_fat_ticks(cache.boxes[s], flight);
+    cache.fat.put(s, fattened(cache.boxes[s], flight, ticks));
     if (cache.looks[s] != 0) continue;
     cache.looks[s] = 1;
     scratch.looking.push_back(s);
@@ -222,9 +227,8 @@ static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tal
                  look_all);
   if (tally.is_over()) return false;
   for (const std::uint32_t shape : scratch.looking) cache.seen_sum += cache.seen[shape];
-  // Total order: the key is the whole pair, so what is equal is the same bytes.
-  std::sort(scratch.fresh_candidates.begin(), scratch.fresh_candidates.end(),
-            [](const ShapePair& a, const ShapePair& b) { return a.key() < b.key(); });
+  sort_pairs(static_cast<std::uint32_t>(state.shapes.size()), scratch.sorted_pairs,
+             scratch.fresh_candidates);
   return true;
 }
 
@@ -279,13 +283,12 @@ static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
   constexpr int kCandidateGrain = 1024;
   const PairCache<D>& cache = scratch.pair_cache;
   scratch.pairs.clear();
+  const auto meets = [&](const ShapePair& pair) {
+    return (cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0 &&
+           overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]);
+  };
   const auto list = [&](Range range, std::vector<ShapePair>& pairs) {
-    for (int i = range.begin; i < range.end; ++i) {
-      const ShapePair& pair = cache.candidates[static_cast<std::size_t>(i)];
-      if ((cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0 &&
-          overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]))
-        pairs.push_back(pair);
-    }
+    append_if(cache.candidates, range, pairs, meets);
   };
   list_in_chunks(workers, static_cast<int>(cache.candidates.size()), kCandidateGrain,
                  scratch.pair_chunks, scratch.pairs, list);

@@ -24,4 +24,18 @@ void list_in_chunks(Workers& workers, int count, int grain, std::vector<std::vec
   for (std::size_t i = 0; i < used; ++i) out.insert(out.end(), chunks[i].begin(), chunks[i].end());
 }
 
+/// Appends those of from[range] that `keep` says yes to. Without a branch, because which do is
+/// anybody's guess where this is asked.
+template <class T, class Keep>
+void append_if(const std::vector<T>& from, Range range, std::vector<T>& out, Keep&& keep) {
+  std::size_t kept = out.size();
+  out.resize(kept + static_cast<std::size_t>(range.end - range.begin));
+  for (int i = range.begin; i < range.end; ++i) {
+    const T& record = from[static_cast<std::size_t>(i)];
+    out[kept] = record;
+    kept += keep(record) ? 1 : 0;
+  }
+  out.resize(kept);
+}
+
 }  // namespace cycloid::solver

@@ -87,6 +87,9 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
 template <int D, int W>
 void store_impulses(Workers& workers, StepScratch<D>& scratch);
 template <int D>
+void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                   StepScratch<D>& scratch);
+template <int D>
 void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch);
 /// The first body that would leave the bounds, or a fault with field kFaultNone.

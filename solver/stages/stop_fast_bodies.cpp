@@ -2,86 +2,78 @@
 #include <utility>
 
 #include "solver/queries/separation.hpp"
-#include "solver/queries/time_of_impact.hpp"
+#include "solver/stages/fast_bodies.hpp"
 #include "solver/stages/may_touch.hpp"
 #include "solver/stages/stages.hpp"
-#include "solver/trig.hpp"
 
 namespace cycloid::solver {
 
-/// A body's way in this tick. Above half a turn the final rotation no longer says how far it
-/// turned; the spin does.
+/// One of two shapes that may meet, and its body's way.
 template <int D>
-static BodySweep<D> sweep_of(const StepContext<D>& context, const WorldState<D>& state,
-                             const StepScratch<D>& scratch, std::uint32_t body) {
-  const Motion<D>& motion = scratch.motions[body];
-  const Spin<D> spun = context.tick_s * motion.spin;
-  const bool winds = dot(spun, spun) > kPi * kPi;
-  return {{state.bodies[body].position, state.bodies[body].rotation},
-          motion.delta_position,
-          winds ? spun : turn_of(motion.delta_rotation)};
+struct Traveller {
+  std::uint32_t shape;
+  std::uint32_t body;
+  const Body<D>& start;
+  const Motion<D>& motion;
+};
+
+template <int D>
+static Traveller<D> traveller(const WorldState<D>& state, const StepScratch<D>& scratch,
+                              std::uint32_t shape) {
+  const std::uint32_t body = state.shapes[shape].body;
+  return {shape, body, state.bodies[body], scratch.motions[body]};
 }
 
-/// The most that a rotation may turn, rad, or more: without a function of trigonometry.
-static float turn_bound(const Rotation<2>& q) {
-  return q[0] >= 0.0f ? 1.6f * abs(q[1]) + 1.0e-5f : 2.0f * kPi;
-}
-static float turn_bound(const Rotation<3>& q) {
-  return q[3] >= 0.0f ? 3.2f * length(Vec<3>{{q[0], q[1], q[2]}}) + 1.0e-5f : 2.0f * kPi;
-}
-
-/// Whether it moves so little in a tick that `is_fast` is false. Most do, and to be sure of it is
-/// cheaper than its way.
+/// Whether two bodies stay farther apart than `reach` with their centres. Then no shape of one
+/// meets any of the other; it decides most pairs that are near and do not meet.
 template <int D>
-static bool is_slow(const StepContext<D>& context, const Body<D>& body, const Motion<D>& motion) {
-  const Spin<D> spun = context.tick_s * motion.spin;
-  if (dot(spun, spun) > 9.0f) return false;
-  const float way = length(motion.delta_position) + body.extent * turn_bound(motion.delta_rotation);
-  return 1.001f * way < 0.5f * body.thickness;
-}
-
-/// Whether it moves so far in a tick that it could pass through something, or over its corner.
-template <int D>
-static bool is_fast(const Body<D>& body, const BodySweep<D>& sweep) {
-  if (!responds(body.kind) || body.extent == 0.0f) return false;
-  const float way = length(sweep.translation) + body.extent * length(sweep.turn);
-  return way > 0.5f * body.thickness;
-}
-
-/// Whether a body stays farther than `reach` from another, whose way is not known but for where it
-/// leads: it decides most pairs that are near and do not meet. Then no shape of one meets any of
-/// the other.
-template <int D>
-static bool stays_clear(const Vec<D>& start_a, const Vec<D>& translation_a, const BodySweep<D>& b,
-                        float reach) {
-  const Vec<D> from = b.start.position - start_a;
-  const Vec<D> way = b.translation - translation_a;
+static bool stays_clear(const Traveller<D>& a, const Traveller<D>& b, float reach) {
+  const Vec<D> from = b.start.position - a.start.position;
+  const Vec<D> way = b.motion.delta_position - a.motion.delta_position;
   const float square = dot(way, way);
   const float fraction = square > 0.0f ? clamp(-dot(from, way) / square, 0.0f, 1.0f) : 0.0f;
   const Vec<D> nearest = from + fraction * way;
   return dot(nearest, nearest) > reach * reach;
 }
 
-/// Whether a body stays farther than its reach above a half-space that rests, at both ends of its
-/// way and so between them.
+/// The farthest that a point of b may move past a in the tick, m, seen from a, which turns: the
+/// centre of b along a curve that leaves its chord by at most an eighth of its greatest
+/// acceleration (w^2 r across, 2 w v along), and b by its turn less that of a. @pre neither winds.
 template <int D>
-static bool stays_above(const BodySweep<D>& ground, const Shape<D>& half_space,
-                        const BodySweep<D>& sweep, float reach) {
-  if (!(dot(ground.translation, ground.translation) == 0.0f) ||
-      !(dot(ground.turn, ground.turn) == 0.0f))
-    return false;
-  const Vec<D> normal = rotate(ground.start.rotation, half_space.normal);
-  const Vec<D> from = sweep.start.position - ground.start.position;
-  const float height = dot(normal, from) - half_space.offset;
-  return height + min(dot(normal, sweep.translation), 0.0f) > reach;
+static float way_past(const Traveller<D>& a, const Traveller<D>& b) {
+  const Vec<D> from = b.start.position - a.start.position;
+  const Vec<D> way = b.motion.delta_position - a.motion.delta_position;
+  const Vec<D> seen = rotate_back(a.motion.delta_rotation, from + way) - from;
+  const float turn = turn_bound(a.motion.delta_rotation);
+  const float size = length(way);
+  const float bulge = 0.125f * turn * (turn * (length(from) + size) + 2.0f * size);
+  const Rotation<D> relative = compose(conjugate(a.motion.delta_rotation), b.motion.delta_rotation);
+  return length(seen) + bulge + b.start.extent * turn_bound(relative);
 }
 
-/// How far from what it meets a body stops, m: near enough that the next tick finds the contact,
-/// far enough that this one did not touch, and little beside its thickness. A card that stops as
-/// far from the next one as it is thick is held up by nothing, and its house falls.
-static float target_of(const Tuning& tuning, float thickness) {
-  const float far = min(0.5f * tuning.slop, 0.5f * thickness);
-  return min(max(far, 1.0e-4f), max(tuning.speculative_distance, 1.0e-4f));
+/// Whether two bodies move past one another by so little that neither can pass through the other,
+/// or over its corner: half the thickness of the thinner one, or of the one that yields. What flies
+/// side by side does, however fast: stopped at its neighbours a crowd would lose its way for
+/// nothing, and what drives it from behind would run over it.
+template <int D>
+static bool cannot_pass(const StepContext<D>& context, const Traveller<D>& a,
+                        const Traveller<D>& b) {
+  if (winds(context, a.motion) || winds(context, b.motion)) return false;
+  const float thin_a = responds(a.start.kind) ? a.start.thickness : b.start.thickness;
+  const float thin_b = responds(b.start.kind) ? b.start.thickness : a.start.thickness;
+  const float enough = 0.5f * min(thin_a, thin_b);
+  return way_past(a, b) <= enough || way_past(b, a) <= enough;
+}
+
+/// Whether a body stays farther than its reach above a half-space, which rests: at both ends of its
+/// way and so between them.
+template <int D>
+static bool stays_above(const Traveller<D>& ground, const Shape<D>& half_space,
+                        const Traveller<D>& body, float reach) {
+  const Vec<D> normal = rotate(ground.start.rotation, half_space.normal);
+  const Vec<D> from = body.start.position - ground.start.position;
+  const float height = dot(normal, from) - half_space.offset;
+  return height + min(dot(normal, body.motion.delta_position), 0.0f) > reach;
 }
 
 template <int D>
@@ -120,84 +112,85 @@ static bool contacts_hold(const WorldState<D>& state, const Shape<D>& a,
   return end.distance > -tolerance;
 }
 
-/// The fraction of the tick at which one shape meets another that it did not touch at the start.
-/// Those that touched belong to the contact solver.
+/// The fraction of the tick at which two shapes meet that did not touch at its start; 1 where they
+/// do not. Those that touched belong to the contact solver. @pre the body of `b` may be stopped,
+/// and that of `a` too if `a_stops`.
 template <int D>
 static float fraction_of(const StepContext<D>& context, const WorldState<D>& state,
-                         const StepScratch<D>& scratch, std::uint32_t shape, std::uint32_t other,
-                         const BodySweep<D>& sweep) {
-  const Shape<D>& a = state.shapes[other];
-  const Shape<D>& b = state.shapes[shape];
-  const float target = target_of(context.tuning, state.bodies[b.body].thickness);
+                         const StepScratch<D>& scratch, std::uint32_t shape_a,
+                         std::uint32_t shape_b, bool a_stops) {
+  const Shape<D>& a = state.shapes[shape_a];
+  const Shape<D>& b = state.shapes[shape_b];
+  const Traveller<D> from = traveller(state, scratch, shape_a);
+  const Traveller<D> to = traveller(state, scratch, shape_b);
+  const float thin = to.start.thickness;
+  const float target =
+      stop_distance(context.tuning, a_stops ? min(from.start.thickness, thin) : thin);
   // A hundredth more than what counts as a touch covers all rounding.
-  const float reach =
-      1.01f * (state.bodies[a.body].extent + state.bodies[b.body].extent + target) + target;
-  if (a.vertex_count > 0 && stays_clear(state.bodies[a.body].position,
-                                        scratch.motions[a.body].delta_position, sweep, reach))
+  const float reach = 1.01f * (from.start.extent + to.start.extent + target) + target;
+  if (a.kind == ShapeKind::kHalfSpace ? stays_above(from, a, to, reach)
+                                      : stays_clear(from, to, reach))
     return 1.0f;
-  const BodySweep<D> other_sweep = sweep_of(context, state, scratch, a.body);
-  if (a.kind == ShapeKind::kHalfSpace && stays_above(other_sweep, a, sweep, reach)) return 1.0f;
+  if (cannot_pass(context, from, to)) return 1.0f;
+  const BodySweep<D> sweep_a = sweep_of(context, state, scratch, a.body);
+  const BodySweep<D> sweep_b = sweep_of(context, state, scratch, b.body);
   const float tolerance = 0.25f * target;
-  if (has_contact(scratch, shape, other) &&
-      contacts_hold(state, a, other_sweep, b, sweep, tolerance))
+  if (has_contact(scratch, shape_a, shape_b) &&
+      contacts_hold(state, a, sweep_a, b, sweep_b, tolerance))
     return 1.0f;
-  const Impact impact =
-      time_of_impact(a, other_sweep, b, sweep, target, tolerance, state.polyhedra);
+  const Impact impact = time_of_impact(a, sweep_a, b, sweep_b, target, tolerance, state.polyhedra);
   return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
 }
 
+/// The fast body of a shape where it may be stopped at the other: null where there is none, and
+/// where something pushes it on and the other yields.
 template <int D>
-static float earliest_impact(const StepContext<D>& context, const WorldState<D>& state,
-                             const StepScratch<D>& scratch, std::uint32_t body,
-                             const BodySweep<D>& sweep) {
-  float first = 1.0f;
-  Vec<D> reach;
-  for (float& value : reach.v) value = state.bodies[body].extent;
-  Bounds<D> bounds{sweep.start.position - reach, sweep.start.position + reach};
-  bounds = merged(bounds, {bounds.lower + sweep.translation, bounds.upper + sweep.translation});
-  for (std::uint32_t s = state.bodies[body].first_shape; s != kNone; s = state.shapes[s].next) {
-    const auto meet = [&](std::uint32_t other) {
-      if (!may_touch(state, scratch, s, other)) return;
-      first = min(first, fraction_of(context, state, scratch, s, other, sweep));
-    };
-    for (const std::uint32_t half_space : scratch.unbounded) meet(half_space);
-    scratch.static_tree.query(bounds, [&](int rank) { meet(scratch.static_tree.leaf(rank).id); });
-    scratch.pair_cache.fat.query(bounds, [&](std::uint32_t other) {
-      if (overlaps(scratch.pair_cache.boxes[other], bounds)) meet(other);
-    });
-  }
-  return first;
+static FastBody<D>* stopped_at(const WorldState<D>& state, StepScratch<D>& scratch,
+                               std::uint32_t shape, std::uint32_t other) {
+  const std::uint32_t place = scratch.fast_of_shape[shape];
+  if (place == 0) return nullptr;
+  FastBody<D>& fast = scratch.fast_bodies[place - 1];
+  const bool yields = responds(state.bodies[state.shapes[other].body].kind);
+  return fast.is_pushed && yields ? nullptr : &fast;
 }
 
 /// Continuous collision: a fast body ends the tick where it first meets what it did not touch
 /// before. Its velocity stays; the contact of the next tick answers to it. The rest of its way is
-/// lost.
+/// lost. So what is pushed on is stopped only at what does not yield: what pushes it would run over
+/// it, and a crowd that is driven would end up in its driver.
 ///
-/// Reads motions, shapes, the tree and the boxes of find_pairs; writes first the stop of each body
-/// that is awake, from the ways of all as the sweeps left them, then the deltas. So any split into
-/// ranges gives the same bits.
+/// Reads motions, shapes and the meetings; writes the fraction of each meeting, from the ways of
+/// all as the sweeps left them, then the least for each fast body, then the deltas. So neither the
+/// order of the meetings nor any split into ranges shows in the bits.
 template <int D>
 void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
   if (context.tuning.continuous == 0) return;
-  const std::vector<std::uint32_t>& bodies = scratch.awake_bodies;
-  scratch.stops.assign(bodies.size(), 1.0f);
-  workers.parallel_for(static_cast<int>(bodies.size()), kPairGrain, [&](Range range) {
+  list_meetings(context, state, workers, scratch);
+  const std::vector<ShapePair>& meetings = scratch.meetings;
+  scratch.fractions.resize(meetings.size());
+  workers.parallel_for(static_cast<int>(meetings.size()), kPairGrain, [&](Range range) {
     for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
          ++i) {
-      const Body<D>& body = state.bodies[bodies[i]];
-      if (is_slow(context, body, scratch.motions[bodies[i]])) continue;
-      const BodySweep<D> sweep = sweep_of(context, state, scratch, bodies[i]);
-      if (is_fast(body, sweep))
-        scratch.stops[i] = earliest_impact(context, state, scratch, bodies[i], sweep);
+      const auto [a, b] = meetings[i];
+      const bool a_stops = stopped_at(state, scratch, a, b) != nullptr;
+      const bool b_stops = stopped_at(state, scratch, b, a) != nullptr;
+      scratch.fractions[i] = b_stops   ? fraction_of(context, state, scratch, a, b, a_stops)
+                             : a_stops ? fraction_of(context, state, scratch, b, a, false)
+                                       : 1.0f;
     }
   });
-  for (std::size_t i = 0; i < bodies.size(); ++i) {
-    if (scratch.stops[i] == 1.0f) continue;
-    const BodySweep<D> sweep = sweep_of(context, state, scratch, bodies[i]);
-    Motion<D>& motion = scratch.motions[bodies[i]];
-    motion.delta_position = scratch.stops[i] * sweep.translation;
-    motion.delta_rotation = rotation_by(scratch.stops[i] * sweep.turn);
+  for (std::size_t i = 0; i < meetings.size(); ++i) {
+    if (scratch.fractions[i] == 1.0f) continue;
+    const auto [a, b] = meetings[i];
+    for (FastBody<D>* fast : {stopped_at(state, scratch, a, b), stopped_at(state, scratch, b, a)})
+      if (fast != nullptr) fast->stop = min(fast->stop, scratch.fractions[i]);
+  }
+  for (const FastBody<D>& fast : scratch.fast_bodies) {
+    if (fast.stop == 1.0f) continue;
+    Motion<D>& motion = scratch.motions[fast.slot];
+    motion.delta_position = fast.stop * fast.sweep.translation;
+    motion.delta_rotation = rotation_by(fast.stop * fast.sweep.turn);
   }
 }
 

@@ -135,4 +135,107 @@ TEST(Continuous, ItDoesNotHoldWhatTouchesAndTurns) {
   }
 }
 
+/// Where a column of boxes that lie close together is after a tick in which all fly on together.
+static std::vector<Vec<2>> column_after_a_tick(std::uint32_t continuous, float spin) {
+  WorldDef<2> def = restless();
+  def.tuning.continuous = continuous;
+  World<2> world = make_world(def);
+  std::vector<BodyId> ids;
+  for (int i = 0; i < 12; ++i) {
+    BodyDef<2> flier;
+    flier.position = {{0.42f * static_cast<float>(i), 3.0f}};
+    flier.velocity = {{30.0f - spin * flier.position[1], spin * flier.position[0]}};
+    flier.spin = {{spin}};
+    ids.push_back(add(world, flier, box(0.2f, 0.2f)));
+  }
+  step(world, 1);
+  std::vector<Vec<2>> ends;
+  for (const BodyId id : ids) ends.push_back(view(world, id).position);
+  return ends;
+}
+
+// Neighbours in a crowd do not pass through one another, however fast it is and however it turns:
+// none is stopped at the next one.
+TEST(Continuous, WhatFliesSideBySideKeepsItsWay) {
+  for (const float spin : {0.0f, 4.0f}) {
+    const std::vector<Vec<2>> stopped = column_after_a_tick(1, spin);
+    const std::vector<Vec<2>> free = column_after_a_tick(0, spin);
+    for (std::size_t i = 0; i < free.size(); ++i) {
+      EXPECT_EQ(stopped[i][0], free[i][0]) << spin << ' ' << i;
+      EXPECT_EQ(stopped[i][1], free[i][1]) << spin << ' ' << i;
+    }
+  }
+}
+
+TEST(Continuous, TwoThatFlyAtEachOtherMeetAtAnySpeedAndPhase) {
+  for (const float speed : {40.0f, 300.0f, 3000.0f})
+    for (int phase = 0; phase < 8; ++phase) {
+      World<2> world = make_world(restless());
+      BodyDef<2> def;
+      def.velocity = {{speed, 0.0f}};
+      const BodyId left = add(world, def, ball<2>(0.05f));
+      def.position = {{6.0f + 0.1f * static_cast<float>(phase), 0.0f}};
+      def.velocity = {{-0.7f * speed, 0.0f}};
+      const BodyId right = add(world, def, box(0.03f, 0.5f));
+      for (int tick = 0; tick < 20; ++tick) {
+        step(world, 1);
+        ASSERT_LT(view(world, left).position[0], view(world, right).position[0])
+            << speed << ' ' << phase;
+      }
+    }
+}
+
+/// How deep a heavy box comes to lie over any of a block of small ones that it flies into, m.
+static float deepest_overrun(std::uint32_t continuous) {
+  WorldDef<2> def = restless();
+  def.tuning.continuous = continuous;
+  World<2> world = make_world(def);
+  BodyDef<2> heavy;
+  heavy.position = {{-6.0f, 0.0f}};
+  heavy.velocity = {{40.0f, 0.0f}};
+  ShapeDef<2> shape = box(4.0f, 4.0f);
+  shape.density = 8.0f;
+  const BodyId driver = add(world, heavy, shape);
+  std::vector<BodyId> crowd;
+  for (int i = 0; i < 24 * 16; ++i) {
+    const Vec<2> at = {{static_cast<float>(i % 24), static_cast<float>(i / 24) - 8.0f}};
+    crowd.push_back(add_at<2>(world, 0.4f * at, box(0.2f, 0.2f)));
+  }
+  float deepest = 0.0f;
+  for (int tick = 0; tick < 60; ++tick) {
+    step(world, 1);
+    for (const BodyId id : crowd) {
+      const Vec<2> at = rotate_back(view(world, driver).rotation,
+                                    view(world, id).position - view(world, driver).position);
+      deepest = max(deepest, 4.0f - max(abs(at[0]), abs(at[1])));
+    }
+  }
+  return deepest;
+}
+
+// Stopped at those beside or before them, boxes of a crowd lose their way and are overrun.
+TEST(Continuous, ACrowdIsNotOverrunByWhatDrivesIt) {
+  EXPECT_LT(deepest_overrun(0), 0.1f);
+  EXPECT_LT(deepest_overrun(1), 0.1f);
+}
+
+// What pushes does not excuse from stopping at what does not yield.
+TEST(Continuous, NothingIsPushedThroughAThinWall) {
+  for (const float speed : {30.0f, 120.0f}) {
+    World<2> world = make_world(restless());
+    add_wall(world, 3.0f);
+    BodyDef<2> def;
+    def.velocity = {{speed, 0.0f}};
+    def.mass = 20.0f;
+    add(world, def, box(0.3f, 0.3f));
+    def.position = {{0.36f, 0.0f}};
+    def.mass = 0.1f;
+    const BodyId pushed = add(world, def, ball<2>(0.05f));
+    for (int tick = 0; tick < 60; ++tick) {
+      step(world, 1);
+      ASSERT_LT(view(world, pushed).position[0], 3.0f) << speed << ' ' << tick;
+    }
+  }
+}
+
 }  // namespace cycloid::solver
