@@ -10,4 +10,13 @@ bool has_avx2_kernels() {
 #endif
 }
 
+bool has_avx512_kernels() {
+#ifdef CYCLOID_AVX512
+  return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
+         __builtin_cpu_supports("avx512dq") != 0;
+#else
+  return false;
+#endif
+}
+
 }  // namespace cycloid::solver

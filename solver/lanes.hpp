@@ -6,9 +6,11 @@
 
 namespace cycloid::solver {
 
-/// The width of the kernels that are compiled for AVX2: 8 lanes under a name of their own, so that
-/// no function compiled with those instructions has the name of one that every processor may run.
+/// The widths of the kernels that are compiled for AVX2 and for AVX-512: 8 and 16 lanes under names
+/// of their own, so that no function compiled with those instructions has the name of one that
+/// every processor may run.
 inline constexpr int kAvx2Lanes = 256 + 8;
+inline constexpr int kAvx512Lanes = 512 + 16;
 
 /// How many lanes a width has.
 template <int W>
@@ -41,6 +43,8 @@ struct RawLanes<16> {
 
 template <>
 struct RawLanes<kAvx2Lanes> : RawLanes<8> {};
+template <>
+struct RawLanes<kAvx512Lanes> : RawLanes<16> {};
 
 /// W independent floats: the arithmetic of every wide kernel. `Lanes<1>` is the scalar path, so a
 /// kernel is written once.

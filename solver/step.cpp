@@ -67,14 +67,16 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
     evaluate<D, W>(context, state, start_s, workers, scratch);
     traced(Phase::kEvaluate);
   }
+  StepContext<D> now = context;
   for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
+    now.odd = (tick + substep) % 2 != 0;
     const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
     traced.substep = substep;
     if (context.tuning.stabilisation == Stabilisation::kXpbd) {
-      project_positions<D, W>(context, state, time_s, workers, scratch);
+      project_positions<D, W>(now, state, time_s, workers, scratch);
       traced(Phase::kProject);
     } else {
-      solve_substep<D, W>(context, state, time_s, traced, workers, scratch);
+      solve_substep<D, W>(now, state, time_s, traced, workers, scratch);
     }
   }
 }
@@ -97,11 +99,17 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   traced(Phase::kStop);
 }
 
-/// The width for what fills as many lanes as it likes; 0 stands for the widest, which are 8 of AVX2
-/// where they are there.
+/// A width in the instruction set that this processor has for it.
+static int in_best_set(int lanes) {
+  if (lanes == 8 && has_avx2_kernels()) return kAvx2Lanes;
+  if (lanes == 16 && has_avx512_kernels()) return kAvx512Lanes;
+  return lanes;
+}
+
+/// The width for what fills as many lanes as it likes; 0 stands for the widest of one instruction.
 static int widest_lanes(int lanes) {
-  if (lanes == 0) return has_avx2_kernels() ? kAvx2Lanes : 4;
-  return lanes == 8 && has_avx2_kernels() ? kAvx2Lanes : lanes;
+  if (lanes != 0) return in_best_set(lanes);
+  return has_avx512_kernels() ? kAvx512Lanes : has_avx2_kernels() ? kAvx2Lanes : 4;
 }
 
 /// How many blocks of `width` contacts the colouring fills.
@@ -112,27 +120,31 @@ static int blocks_of(const Coloring& coloring, int width) {
   return blocks;
 }
 
-/// The width that solves these contacts soonest, for it changes no bit: that of AVX2 where it is
-/// there and saves blocks. One lane never does: even a single contact costs less in a block of
-/// four, whose gathering is made of whole loads.
+/// The width that solves these contacts soonest, for it changes no bit: the wider one where it is
+/// there and saves blocks, of 16 lanes a third of them, for such a block takes longer. One lane
+/// never does: even a single contact costs less in a block of four, whose gathering is made of
+/// whole loads.
 static int width_for(const Coloring& coloring) {
-  return has_avx2_kernels() && blocks_of(coloring, 8) < blocks_of(coloring, 4) ? kAvx2Lanes : 4;
+  if (!has_avx2_kernels()) return 4;
+  const int of_eight = blocks_of(coloring, 8);
+  if (has_avx512_kernels() && 3 * blocks_of(coloring, 16) < 2 * of_eight) return kAvx512Lanes;
+  return of_eight < blocks_of(coloring, 4) ? kAvx2Lanes : 4;
 }
 
 template <int D>
 static void solve_in_lanes(int lanes, const StepContext<D>& context, const WorldState<D>& state,
                            Workers& workers, StepScratch<D>& scratch) {
-  switch (lanes == 0 ? width_for(scratch.contact_coloring) : lanes) {
+  switch (lanes == 0 ? width_for(scratch.contact_coloring) : in_best_set(lanes)) {
     case 1:
       return solve_contacts<D, 1>(context, state, workers, scratch);
     case 8:
-      if (has_avx2_kernels())
-        return solve_contacts<D, kAvx2Lanes>(context, state, workers, scratch);
       return solve_contacts<D, 8>(context, state, workers, scratch);
     case 16:
       return solve_contacts<D, 16>(context, state, workers, scratch);
     case kAvx2Lanes:
       return solve_contacts<D, kAvx2Lanes>(context, state, workers, scratch);
+    case kAvx512Lanes:
+      return solve_contacts<D, kAvx512Lanes>(context, state, workers, scratch);
     default:
       return solve_contacts<D, 4>(context, state, workers, scratch);
   }
@@ -151,14 +163,6 @@ static void solve_tick(int lanes, const StepContext<D>& context, const WorldStat
   prepare_bodies(context, state, workers, scratch);
   prepare_joints(context, state, scratch);
   solve_in_lanes(lanes, context, state, workers, scratch);
-}
-
-template <int D>
-static bool turns(const WorldState<D>& state, std::uint32_t shape) {
-  const Body<D>& body = state.bodies[state.shapes[shape].body];
-  for (const float value : body.inverse_inertia.m)
-    if (value != 0.0f) return true;
-  return false;
 }
 
 /// Rows of a contact between two materials.
@@ -182,14 +186,12 @@ static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch
   const bool one_material = state.materials.size() == 1;
   ContactRows kind{};
   if (one_material) kind = rows_between<D>(state.materials[0], state.materials[0]);
-  for (const int index : scratch.live_contacts) {
-    const Contact<D>& contact = state.contacts[static_cast<std::size_t>(index)];
+  for (const LiveContact<D>& live : scratch.live) {
     if (!one_material)
-      kind = rows_between<D>(state.materials[state.shapes[contact.shape_a].material],
-                             state.materials[state.shapes[contact.shape_b].material]);
-    const std::uint32_t rows = contact.point_count * kind.per_point + kind.more;
+      kind = rows_between<D>(state.materials[live.material_a], state.materials[live.material_b]);
+    const std::uint32_t rows = live.manifold.point_count * kind.per_point + kind.more;
     statistics.rows_per_sweep += rows;
-    if (turns(state, contact.shape_a) || turns(state, contact.shape_b))
+    if (can_turn(scratch.masses[live.body_a]) || can_turn(scratch.masses[live.body_b]))
       statistics.turning_rows_per_sweep += rows;
   }
   for (const JointRow<D>& row : scratch.joint_rows) {

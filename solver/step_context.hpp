@@ -16,9 +16,10 @@ struct StepContext {
   Softness contact;         ///< Between two movable bodies.
   Softness contact_static;  ///< Against a body without mass: twice as stiff.
   Softness joint;
-  Softness pseudo;  ///< Of pseudo-velocity sweeps, which are rigid and biased.
-  Softness motor;   ///< Of position motors without a frequency of their own.
-  float slop;       ///< m of overlap that velocity sweeps leave alone.
+  Softness pseudo;   ///< Of pseudo-velocity sweeps, which are rigid and biased.
+  Softness motor;    ///< Of position motors without a frequency of their own.
+  float slop;        ///< m of overlap that velocity sweeps leave alone.
+  bool odd = false;  ///< Of the number of the tick and the substep in sum: see point_in_turn.
 };
 
 /// Stiffness above a fraction of the substep rate turns into noise: contacts are held to an eighth
@@ -57,5 +58,18 @@ StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuni
 /// Whether a sweep corrects positions (biased, soft), only velocities (relax), or pseudo-velocities
 /// that start at zero and answer to overlap alone.
 enum class Sweep { kBiased, kRelax, kPseudo };
+
+/// Which of `count` points of a manifold a sweep visits as number i: from the first to the last and
+/// from the last to the first in turn. Always in one order each sweep would favour the last point,
+/// and everything lean: of twenty boxes on one another Soft Step let the highest sink by 0.6 m, and
+/// the pyramids under heavy apexes were thrown over. The turns go on from tick to tick: each tick
+/// beginning alike, thirty boxes on one another sway at 10 mm/s for ever. The relax sweep goes
+/// against the biased one: if both turn together, cards that lean on one another slide.
+template <int D>
+std::uint32_t point_in_turn(const StepContext<D>& context, Sweep sweep, std::uint32_t i,
+                            std::uint32_t count) {
+  const bool backwards = context.odd != (sweep == Sweep::kRelax);
+  return backwards ? count - 1 - i : i;
+}
 
 }  // namespace cycloid::solver

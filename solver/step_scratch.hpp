@@ -1,7 +1,9 @@
 #pragma once
 
 #include <cstdint>
+#include <cstring>
 #include <tuple>
+#include <type_traits>
 #include <vector>
 
 #include "solver/collision/bounds_tree.hpp"
@@ -34,10 +36,22 @@ struct Coloring {
 template <int D, int W>
 struct ContactBlocks {
   std::vector<ContactBlock<D, W>> blocks;
-  bool follows = false;  ///< Some block does.
+  std::vector<ContactExtra<D, W>> extras;  ///< By block; of use only where the block has one.
+  bool follows = false;                    ///< Some block does.
   bool bounces = false;
   std::vector<Range> colors;
   Range overflow;
+
+  /// The extra of a block, which it has from now on: all 0, and points that turn.
+  ContactExtra<D, W>& extra_of(std::size_t block) {
+    ContactExtra<D, W>*& extra = blocks[block].extra;
+    if (extra != nullptr) return *extra;
+    extra = &extras[block];
+    static_assert(std::is_trivially_copyable_v<ContactExtra<D, W>>);
+    std::memset(extra, 0, sizeof *extra);
+    extra->turns_a = extra->turns_b = Lanes<W>(1.0f);
+    return *extra;
+  }
 };
 
 /// A registered kind of constraint.
@@ -76,15 +90,29 @@ struct KeptByWorld {
   StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
 };
 
+/// A contact that is solved in this tick, with what is at hand where its shapes are collided and
+/// lies far apart later.
+template <int D>
+struct LiveContact {
+  std::uint32_t contact;  ///< Its place among all contacts.
+  std::uint32_t body_a;
+  std::uint32_t body_b;
+  std::uint32_t material_a;
+  std::uint32_t material_b;
+  bool a_is_ball;  ///< About its centre of mass.
+  bool b_is_ball;
+  Vec<D> between;  ///< Centre of b from that of a, m.
+  Manifold<D> manifold;
+};
+
 /// The contacts of a tick in the order of their shapes, or those of one chunk of its pairs.
 template <int D>
 struct ContactList {
-  std::vector<Contact<D>> contacts;    ///< Of a tick: become the state's when the step commits.
-  std::vector<Manifold<D>> manifolds;  ///< Of each contact.
-  std::vector<int> live_contacts;      ///< Those with a manifold; the others are asleep.
-  std::vector<std::uint32_t> began;    ///< Contacts that touch and did not.
-  std::vector<std::uint32_t> ended;    ///< Contacts of the state that no longer touch.
-  std::vector<Manifold<D>> found;      ///< Of a batch of pairs; empty where shapes are apart.
+  std::vector<Contact<D>> contacts;  ///< Of a tick: become the state's when the step commits.
+  std::vector<LiveContact<D>> live;  ///< Those with a manifold, in their order; others are asleep.
+  std::vector<std::uint32_t> began;  ///< Contacts that touch and did not.
+  std::vector<std::uint32_t> ended;  ///< Contacts of the state that no longer touch.
+  std::vector<Manifold<D>> found;    ///< Of a batch of pairs; empty where shapes are apart.
 };
 
 /// Everything a step computes and throws away: nothing in here that shows outlives a tick, so
@@ -101,9 +129,11 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::vector<ShapePair> sorted_pairs;      ///< For sort_pairs to work in.
   std::vector<ShapePair> pairs;             ///< Sorted by key.
   std::vector<ContactList<D>> contact_chunks;
+  std::vector<LiveContact<D>> live_before;  ///< Before any woke.
 
-  std::vector<std::uint8_t> active;  ///< By body: it took part by itself as the tick began.
-  std::uint32_t bodies_asleep = 0;   ///< Those that did not, and could move; later, that do not.
+  std::vector<std::uint8_t> active;    ///< By body: it took part by itself as the tick began.
+  std::vector<std::uint8_t> has_mass;  ///< By body: a force moves it.
+  std::uint32_t bodies_asleep = 0;     ///< Those that did not, and could move; later, that do not.
 
   bool islands_are_known = false;        ///< Only where somebody wakes, or is to fall asleep.
   std::vector<std::uint32_t> islands;    ///< Parent of each body; the root is its lowest slot.
@@ -118,8 +148,8 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::vector<std::uint32_t> used_colors;    ///< Bit set by body slot.
   std::vector<int> color_of;
   std::vector<int> live_joints;
-  Coloring joint_coloring;  ///< `order` holds joint slots.
-  Coloring contact_coloring;
+  Coloring joint_coloring;               ///< `order` holds joint slots.
+  Coloring contact_coloring;             ///< `order` holds places of live contacts.
   std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.
   std::vector<Motion<D>> saved_motions;  ///< Of pseudo-velocity sweeps and of XPBD's substep.
   std::vector<JointRow<D>> saved_rows;
@@ -138,7 +168,7 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   ParticleScratch<D> particles;
   WorldState<D> before;  ///< Of worlds with particles, to undo a tick that faults.
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>,
-             ContactBlocks<D, kAvx2Lanes>>
+             ContactBlocks<D, kAvx2Lanes>, ContactBlocks<D, kAvx512Lanes>>
       contact_blocks;                          ///< Only that of the chosen width is filled.
   std::vector<Acceleration<D>> accelerations;  ///< Of awake_bodies.
   std::uint32_t substeps = 0;                  ///< Of this tick.

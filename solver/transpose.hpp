@@ -22,6 +22,7 @@ inline constexpr LaneBits kAllLanes = (LaneBits{1} << kLaneCount<W>)-1;
 
 using Quad = RawLanes<4>::Float;
 using QuadPair = RawLanes<8>::Float;
+using QuadFour = RawLanes<16>::Float;
 
 /// Four rows of four become four columns.
 [[gnu::always_inline]] inline void transpose(Quad (&q)[4]) {
@@ -44,6 +45,26 @@ using QuadPair = RawLanes<8>::Float;
   q[1] = __builtin_shufflevector(low_01, low_23, 2, 3, 10, 11, 6, 7, 14, 15);
   q[2] = __builtin_shufflevector(high_01, high_23, 0, 1, 8, 9, 4, 5, 12, 13);
   q[3] = __builtin_shufflevector(high_01, high_23, 2, 3, 10, 11, 6, 7, 14, 15);
+}
+
+/// And in all four quarters.
+[[gnu::always_inline]] inline void transpose(QuadFour (&q)[4]) {
+  const QuadFour low_01 = __builtin_shufflevector(q[0], q[1], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9,
+                                                  25, 12, 28, 13, 29);
+  const QuadFour high_01 = __builtin_shufflevector(q[0], q[1], 2, 18, 3, 19, 6, 22, 7, 23, 10, 26,
+                                                   11, 27, 14, 30, 15, 31);
+  const QuadFour low_23 = __builtin_shufflevector(q[2], q[3], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9,
+                                                  25, 12, 28, 13, 29);
+  const QuadFour high_23 = __builtin_shufflevector(q[2], q[3], 2, 18, 3, 19, 6, 22, 7, 23, 10, 26,
+                                                   11, 27, 14, 30, 15, 31);
+  q[0] = __builtin_shufflevector(low_01, low_23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13,
+                                 28, 29);
+  q[1] = __builtin_shufflevector(low_01, low_23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14, 15,
+                                 30, 31);
+  q[2] = __builtin_shufflevector(high_01, high_23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13,
+                                 28, 29);
+  q[3] = __builtin_shufflevector(high_01, high_23, 2, 3, 18, 19, 6, 7, 22, 23, 10, 11, 26, 27, 14,
+                                 15, 30, 31);
 }
 
 template <class Value, class Record>
@@ -84,6 +105,19 @@ template <int W, class Record>
     }
     transpose(rows);
     for (int i = 0; i < 4; ++i) columns[i].raw = rows[i];
+  } else if constexpr (W == kAvx512Lanes) {
+    QuadFour rows[4];
+    for (int r = 0; r < 4; ++r) {
+      const auto pair = [&](int lane) {
+        return __builtin_shufflevector(load_quad(records[index[lane]], quad),
+                                       load_quad(records[index[lane + 4]], quad), 0, 1, 2, 3, 4, 5,
+                                       6, 7);
+      };
+      rows[r] = __builtin_shufflevector(pair(r), pair(r + 8), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11,
+                                        12, 13, 14, 15);
+    }
+    transpose(rows);
+    for (int i = 0; i < 4; ++i) columns[i].raw = rows[i];
   } else {
     float column[4][W];
     for (int at = 0; at < W; at += 4) {
@@ -110,6 +144,15 @@ template <int W, class Record>
     for (int r = 0; r < 4; ++r) {
       rows[r] = __builtin_shufflevector(pairs[r], pairs[r], 0, 1, 2, 3);
       rows[r + 4] = __builtin_shufflevector(pairs[r], pairs[r], 4, 5, 6, 7);
+    }
+  } else if constexpr (W == kAvx512Lanes) {
+    QuadFour fours[4] = {columns[0].raw, columns[1].raw, columns[2].raw, columns[3].raw};
+    transpose(fours);
+    for (int r = 0; r < 4; ++r) {
+      rows[r] = __builtin_shufflevector(fours[r], fours[r], 0, 1, 2, 3);
+      rows[r + 4] = __builtin_shufflevector(fours[r], fours[r], 4, 5, 6, 7);
+      rows[r + 8] = __builtin_shufflevector(fours[r], fours[r], 8, 9, 10, 11);
+      rows[r + 12] = __builtin_shufflevector(fours[r], fours[r], 12, 13, 14, 15);
     }
   } else {
     float column[4][W];

@@ -13,10 +13,11 @@ struct Bounds {
 
   /// Without a branch for each side: of pairs that are near it is anybody's guess.
   friend bool overlaps(const Bounds& a, const Bounds& b) {
-    bool apart = false;
+    int apart = 0;
     for (int i = 0; i < D; ++i)
-      apart = apart | (a.lower[i] > b.upper[i]) | (b.lower[i] > a.upper[i]);
-    return !apart;
+      apart |=
+          static_cast<int>(a.lower[i] > b.upper[i]) | static_cast<int>(b.lower[i] > a.upper[i]);
+    return apart == 0;
   }
   friend Bounds merged(Bounds a, const Bounds& b) {
     for (int i = 0; i < D; ++i) {

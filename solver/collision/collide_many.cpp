@@ -80,16 +80,24 @@ static void collide_block(const Collider<2>& collider, const PlacedPair<2>* pair
 template <int W>
 static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* pairs,
                              const Waiting& waiting, OneByOne& one_by_one, Manifold<2>* manifolds) {
-  for (int begin = 0; begin < waiting.count; begin += kLaneCount<W>) {
+  int begin = 0;
+  while (begin < waiting.count) {
     const int left = waiting.count - begin;
-    const int used = left < kLaneCount<W> ? left : kLaneCount<W>;
-    if (4 * used > kLaneCount<W>) {
-      collide_block<W>(collider, pairs, waiting.pairs + begin, used, one_by_one, manifolds);
+    const std::uint32_t* next = waiting.pairs + begin;
+    if (W == kAvx512Lanes && left <= kLaneCount<kAvx2Lanes>) {
+      const int used = left;
+      if (4 * used <= kLaneCount<kAvx2Lanes>) break;
+      collide_block<kAvx2Lanes>(collider, pairs, next, used, one_by_one, manifolds);
+      begin += used;
       continue;
     }
-    for (int i = begin; i < waiting.count; ++i)
-      manifolds[waiting.pairs[i]] = one_by_one(collider, pairs[waiting.pairs[i]]);
+    const int used = left < kLaneCount<W> ? left : kLaneCount<W>;
+    if (4 * used <= kLaneCount<W>) break;
+    collide_block<W>(collider, pairs, next, used, one_by_one, manifolds);
+    begin += used;
   }
+  for (int i = begin; i < waiting.count; ++i)
+    manifolds[waiting.pairs[i]] = one_by_one(collider, pairs[waiting.pairs[i]]);
 }
 
 template <>
@@ -111,6 +119,8 @@ void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>*
       return collide_in_lanes<16>(*this, pairs, waiting, one_by_one, manifolds);
     case kAvx2Lanes:
       return collide_in_lanes<kAvx2Lanes>(*this, pairs, waiting, one_by_one, manifolds);
+    case kAvx512Lanes:
+      return collide_in_lanes<kAvx512Lanes>(*this, pairs, waiting, one_by_one, manifolds);
     default:
       return collide_in_lanes<4>(*this, pairs, waiting, one_by_one, manifolds);
   }

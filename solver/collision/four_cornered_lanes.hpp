@@ -150,18 +150,26 @@ template <int W>
   const L divisor = select(run > L(1.0e-9f), run, one);
   const L bound[2] = {zero, width};
   const typename L::Mask outside[2] = {x[0]<zero, x[1]> width};
+  ClippedPoint<W> end[2];
   for (int i = 0; i < 2; ++i) {
     const L whole = i == 0 ? zero : one;
     const L cut = select(run > L(1.0e-9f), (bound[i] - x[0]) / divisor, whole);
     const L fraction = select(outside[i], cut, whole);
     const Vec<2, L> point = q[0] + fraction * (q[1] - q[0]);
     const L height = dot(clipped.normal, point - from);
-    ClippedPoint<W>& out = clipped.points[i];
-    out.separation = height - reach;
+    end[i].separation = height - reach;
     // Midway between the two surfaces along the normal.
-    out.at = point + (L(0.5f) * (reference.radius - other.radius - height)) * clipped.normal;
-    out.feature =
-        L(256.0f) * flipped + L(16.0f) * edge + corner[i] + select(outside[i], L(512.0f), zero);
+    end[i].at = point + (L(0.5f) * (reference.radius - other.radius - height)) * clipped.normal;
+  }
+  const auto is_flipped = flipped > zero;
+  const L feature =
+      L(16.0f) * select(is_flipped, incident, edge) + L(2.0f) * select(is_flipped, edge, incident);
+  for (int side = 0; side < 2; ++side) {
+    ClippedPoint<W>& out = clipped.points[side];
+    out.separation = select(is_flipped, end[1 - side].separation, end[side].separation);
+    for (int k = 0; k < 2; ++k)
+      out.at[k] = select(is_flipped, end[1 - side].at[k], end[side].at[k]);
+    out.feature = feature + L(static_cast<float>(side));
   }
   return clipped;
 }

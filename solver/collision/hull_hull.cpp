@@ -96,9 +96,14 @@ struct Reference {
   bool flipped;  ///< The reference is shape b.
 };
 
-static std::uint32_t feature_id(const Reference& reference, std::uint32_t vertex, bool clipped) {
-  return (reference.flipped ? 0x100u : 0u) | (reference.edge << 4) | vertex |
-         (clipped ? 0x200u : 0u);
+/// Of a feature of the reference and one of the other: the same whichever of the shapes is the
+/// reference. Two overlapping boxes change that from tick to tick, and a point that lost its
+/// impulses for it would have to find them again: a pyramid never came to rest.
+static std::uint32_t feature_id(const Reference& reference, std::uint32_t own,
+                                std::uint32_t of_other) {
+  const std::uint32_t a = reference.flipped ? of_other : own;
+  const std::uint32_t b = reference.flipped ? own : of_other;
+  return (a << 4) | (b << 1);
 }
 
 /// The line between two vertices, where these are what is closest; no point otherwise.
@@ -125,13 +130,15 @@ static bool vertex_against_vertex(const Reference& reference, const Edge& incide
   const float separation = distance - reach;
   manifold.normal = reference.flipped ? -direction : direction;
   const Vec<2> surface = on_reference + reference.hull.radius * direction;
-  const std::uint32_t vertex = t == 0.0f ? incident.from : incident.to;
-  add_point(surface + (0.5f * separation) * direction, separation,
-            0x400u | feature_id(reference, vertex, s == 0.0f), a_to_b, manifold);
+  const std::uint32_t feature = feature_id(reference, s == 0.0f ? edge.from : edge.to,
+                                           t == 0.0f ? incident.from : incident.to);
+  add_point(surface + (0.5f * separation) * direction, separation, 0x400u | feature, a_to_b,
+            manifold);
   return true;
 }
 
-/// The incident edge cut to the width of the reference edge.
+/// The incident edge cut to the width of the reference edge: first the end that comes first along
+/// the edge of shape a.
 static void clip_edges(const Reference& reference, const Edge& incident, const Vec<2>& a_to_b,
                        float margin, Manifold<2>& manifold) {
   const Edge edge = edge_of(reference.hull, reference.edge);
@@ -142,14 +149,15 @@ static void clip_edges(const Reference& reference, const Edge& incident, const V
   const Vec<2> tangent = (1.0f / width) * span;
   // The incident edge runs against the reference edge; take its far end first.
   const Vec<2> q[2] = {reference.other.vertex(incident.to), reference.other.vertex(incident.from)};
-  const std::uint32_t vertex[2] = {incident.to, incident.from};
   const float x[2] = {dot(q[0] - from, tangent), dot(q[1] - from, tangent)};
   if (x[1] < 0.0f || x[0] > width) return;
 
   const float reach = reference.hull.radius + reference.other.radius;
   manifold.normal = reference.flipped ? -normal : normal;
   const float run = x[1] - x[0];
-  for (int i = 0; i < 2; ++i) {
+  const std::uint32_t feature = feature_id(reference, reference.edge, incident.from);
+  for (int side = 0; side < 2; ++side) {
+    const int i = reference.flipped ? 1 - side : side;
     const float bound = i == 0 ? 0.0f : width;
     const bool outside = i == 0 ? x[0] < bound : x[1] > bound;
     const float fraction = outside && run > 1.0e-9f ? (bound - x[0]) / run : (i == 0 ? 0.0f : 1.0f);
@@ -160,7 +168,7 @@ static void clip_edges(const Reference& reference, const Edge& incident, const V
     // Midway between the two surfaces along the normal.
     const Vec<2> at =
         point + (0.5f * (reference.hull.radius - reference.other.radius - height)) * normal;
-    add_point(at, separation, feature_id(reference, vertex[i], outside), a_to_b, manifold);
+    add_point(at, separation, feature | static_cast<std::uint32_t>(side), a_to_b, manifold);
   }
 }
 

@@ -1,100 +1,8 @@
 #pragma once
 
-#include "solver/constraints/motion_lanes.hpp"
-#include "solver/step_context.hpp"
+#include "solver/constraints/contact_block.hpp"
 
 namespace cycloid::solver {
-
-/// Where a contact point is during the tick, from either centre.
-template <int D, class L>
-struct Arms {
-  Vec<D, L> r_a;
-  Vec<D, L> r_b;
-};
-
-/// W contacts whose bodies are all different, one in each lane; unused lanes have no mass.
-///
-/// Rows of a point with arms r from the centres, normal n (a to b) and tangents t:
-///   C = separation >= 0,  Cdot = n . (v_b + w_b x r_b - v_a - w_a x r_a),  J = (-n, -r_a x n, n,
-///   r_b x n),  0 <= normal impulse;  friction: Cdot_t = t . (...), |impulse| <= friction * normal.
-/// Effective mass K^-1 with K = J M^-1 J^T per row. Units N s and m/s.
-/// Source: Catto, "Iterative Dynamics with Temporal Coherence" (2005) and "Solver2D" (2024).
-template <int D, int W>
-struct ContactBlock {
-  using L = Lanes<W>;
-  static constexpr int kTangents = Dim<D>::kTangents;
-
-  struct Point {
-    Vec<D, L> r_a;
-    Vec<D, L> r_b;
-    L separation;     ///< At the start of the tick, m.
-    L normal_mass;    ///< 0 in lanes that have no such point.
-    Arms<D, L> arms;  ///< At the poses of ContactBlock::placed.
-    L gap;            ///< Separation at those poses, m.
-    L tangent_mass[kTangents];
-    L normal_impulse;
-    L position_impulse;  ///< Of XPBD's position pass in this substep, kg m.
-    L saved_impulse;     ///< The normal impulse while pseudo-velocities are solved.
-    L bounce_impulse;    ///< Of this substep's bounces, N s: friction may use it too.
-    L tangent_impulse[kTangents];
-  };
-
-  LaneIndices<W> body_a;
-  LaneIndices<W> body_b;
-  LaneIndices<W> contact;
-  LaneBits moves_a;  ///< Lanes whose body a has mass.
-  LaneBits moves_b;
-  LaneBits has_point[Dim<D>::kManifoldPoints];  ///< By point, the lanes that have it.
-  LaneBits loaded;   ///< Of islands: lanes whose load a soft contact would give way to (find_load).
-  LaneBits misses;   ///< Of islands (contact_rest.hpp): lanes that the warm start left in motion,
-  LaneBits stirs;    ///< or not quite at rest.
-  LaneBits taken;    ///< Of islands: lanes in one that is solved, for the whole tick,
-  LaneBits left;     ///< and lanes in none.
-  LaneBits settled;  ///< Of islands: lanes that biased sweeps pass by.
-  std::uint32_t placed;       ///< Which poses the arms are of (StepScratch::poses); 0: of none.
-  std::uint32_t point_count;  ///< The most points of any lane.
-  bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
-  bool rubs;                  ///< Some lane has friction; else there are no tangent rows.
-  bool rolls;                 ///< Some lane resists rolling or twist.
-  bool bounces;               ///< Some lane restitutes.
-  bool bounced;               ///< Some did in the last sweep of bounces.
-  bool follows;               ///< Some lane is round.
-  bool touches;               ///< Some lane has a `touch` above 0.
-  LaneMass<D, W> mass_a;
-  LaneMass<D, W> mass_b;
-  Vec<D, L> normal;
-  Vec<D, L> tangent[kTangents];
-  L share_b;  ///< m_b^-1 / (m_a^-1 + m_b^-1): how far a contact point follows body b.
-  L friction;
-  L restitution;
-  L pull;     ///< Acceleration of b towards a along the normal by gravity and forces, m/s^2.
-  L rolling;  ///< Rolling resistance times radius: moment over normal impulse, m.
-  L twist;    ///< The same about the normal, m; 0 in the plane.
-  Spin<D, L> rolling_impulse;
-  L bias_rate;
-  L mass_scale;
-  L impulse_scale;
-  L touch;    ///< A gap below it counts as none, m: above 0 in islands alone.
-  L turns_a;  ///< 1, or 0 where the point lies on a ball: it does not turn with the body.
-  L turns_b;
-  L is_round;               ///< 1 where both are balls about their centres of mass: follow_round.
-  Vec<D, L> centre_offset;  ///< Of b from a at the start of the tick, m.
-  L radius_a;
-  L radius_b;
-  Point points[Dim<D>::kManifoldPoints];
-};
-
-/// The point moves with the two centres, weighted so that it follows the lighter body. Both
-/// impulses of a pair then act at one place, so angular momentum is kept to rounding; arms that are
-/// fixed to each centre (Catto, Solver2D) let the two places part while the bodies slide.
-template <int D, int W>
-[[gnu::always_inline]] inline Arms<D, Lanes<W>> arms_of(
-    const ContactBlock<D, W>& block, const typename ContactBlock<D, W>::Point& point,
-    const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
-  const Vec<D, Lanes<W>> slide = b.delta_position - a.delta_position;
-  const Vec<D, Lanes<W>> r_a = point.r_a + block.share_b * slide;
-  return {r_a, point.r_b + (block.share_b * slide - slide)};
-}
 
 /// direction . (v_b + w_b x r_b - v_a - w_a x r_a).
 template <int D, int W>
@@ -128,40 +36,46 @@ struct NormalRow {
   Lanes<W> impulse_scale;
 };
 
-/// Separation along the normal of the tick's start at the present poses.
+/// Softness of overlapping points, in each lane: of pairs that both move, or of one that does; what
+/// an island has taken is rigid, and moved out of overlap by the island.
+template <int W>
+struct SoftnessLanes {
+  Lanes<W> bias_rate;
+  Lanes<W> mass_scale;
+  Lanes<W> impulse_scale;
+};
 template <int D, int W>
-[[gnu::always_inline]] inline Lanes<W> separation_of(
-    const ContactBlock<D, W>& block, const typename ContactBlock<D, W>::Point& point,
-    const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
-  const Vec<D, Lanes<W>> turned_b = rotate(b.delta_rotation, point.r_b) - point.r_b;
-  const Vec<D, Lanes<W>> turned_a = rotate(a.delta_rotation, point.r_a) - point.r_a;
-  const Vec<D, Lanes<W>> moved =
-      (b.delta_position - a.delta_position) + (block.turns_b * turned_b - block.turns_a * turned_a);
-  return point.separation + dot(moved, block.normal);
-}
-
-/// Arms and gaps where the bodies are now: they hold until positions move again.
-template <int D, int W>
-[[gnu::always_inline]] inline void place(ContactBlock<D, W>& block, const MotionLanes<D, W>& a,
-                                         const MotionLanes<D, W>& b) {
-  for (std::uint32_t i = 0; i < block.point_count; ++i) {
-    auto& point = block.points[i];
-    const Lanes<W> gap = separation_of(block, point, a, b);
-    point.arms = arms_of(block, point, a, b);
-    point.gap = gap;
-    if (!block.touches) continue;
-    point.gap = select(gap < block.touch, min(gap, Lanes<W>(0.0f)), gap);
+[[gnu::always_inline]] inline SoftnessLanes<W> softness_of(const StepContext<D>& context,
+                                                           const ContactBlock<D, W>& block) {
+  using L = Lanes<W>;
+  const Softness& both = context.contact;
+  SoftnessLanes<W> soft{both.bias_rate, both.mass_scale, both.impulse_scale};
+  const LaneBits both_move = block.moves_a & block.moves_b;
+  if (both_move != kAllLanes<W>) {
+    const Softness& one = context.contact_static;
+    const auto of_both = mask_of<W>(both_move);
+    soft = {select(of_both, soft.bias_rate, L(one.bias_rate)),
+            select(of_both, soft.mass_scale, L(one.mass_scale)),
+            select(of_both, soft.impulse_scale, L(one.impulse_scale))};
   }
+  if (block.taken != 0) {
+    const auto rigid = mask_of<W>(block.taken);
+    soft = {select(rigid, L(0.0f), soft.bias_rate), select(rigid, L(1.0f), soft.mass_scale),
+            select(rigid, L(0.0f), soft.impulse_scale)};
+  }
+  return soft;
 }
 
 /// A gap s > 0 may be closed but not crossed in this substep: bias = s / h. Overlap beyond the slop
 /// is pushed out by the block's softness, at most at `push_speed_max`. Pseudo-velocities answer to
 /// overlap alone: what is apart may not come closer by them. A relax sweep looks one substep ahead;
 /// what is about to bounce there keeps its `speed`, or it would arrive without it.
+/// @param soft  softness_of the block; not read by other sweeps than biased ones.
 template <int D, int W>
 [[gnu::always_inline]] inline NormalRow<W> normal_row(
     const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
-    const typename ContactBlock<D, W>::Point& point, const Lanes<W>& speed) {
+    const SoftnessLanes<W>& soft, const typename ContactBlock<D, W>::Point& point,
+    const Lanes<W>& speed) {
   using L = Lanes<W>;
   NormalRow<W> row;
   const auto apart = point.gap > L(0.0f);
@@ -171,17 +85,17 @@ template <int D, int W>
   row.impulse_scale = L(0.0f);
   if (sweep == Sweep::kRelax) {
     if (!block.bounces) return row;
-    const L about_to = select(block.restitution > L(0.0f), L(1.0f), L(0.0f));
+    const L about_to = select(block.extra->restitution > L(0.0f), L(1.0f), L(0.0f));
     const L fast = select(speed < L(-context.tuning.restitution_threshold), about_to, L(0.0f));
     row.bias = select(apart, select(fast > L(0.0f), -speed, row.bias), row.bias);
     return row;
   }
-  const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : block.bias_rate;
+  const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : soft.bias_rate;
   const L overlap = min(point.gap + L(context.slop), L(0.0f));
   row.bias = select(apart, row.bias, max(rate * overlap, L(-context.tuning.push_speed_max)));
   if (sweep == Sweep::kPseudo) return row;
-  row.mass_scale = select(apart, row.mass_scale, block.mass_scale);
-  row.impulse_scale = select(apart, row.impulse_scale, block.impulse_scale);
+  row.mass_scale = select(apart, row.mass_scale, soft.mass_scale);
+  row.impulse_scale = select(apart, row.impulse_scale, soft.impulse_scale);
   return row;
 }
 
@@ -200,10 +114,10 @@ template <int D, int W>
     const auto& point = block.points[i];
     Vec<D, Lanes<W>> impulse = point.normal_impulse * block.normal;
     for (int t = 0; t < Dim<D>::kTangents; ++t)
-      impulse += point.tangent_impulse[t] * block.tangent[t];
-    apply_pair(impulse, point.arms, block, a, b);
+      impulse += point.tangent_impulse[t] * tangent_of(block, t);
+    apply_pair(impulse, arms_of(block, point), block, a, b);
   }
-  if (block.rolls) turn_pair(block.rolling_impulse, block, a, b);
+  if (block.rolls) turn_pair(block.extra->rolling_impulse, block, a, b);
 }
 
 /// Holds an impulse of N components to a length of at most `bound`; in the plane an interval.
@@ -236,21 +150,23 @@ void slide_against(const L& bound, const L (&impulse)[2], const L (&mass)[2], co
   for (int t = 0; t < 2; ++t) wanted[t] = select(slides, impulse[t] - least * speed[t], wanted[t]);
 }
 
-/// Coulomb friction of one point against its normal impulse: in the plane the impulse is held to an
-/// interval, in space to a disc.
+/// Coulomb friction of point `index` against its normal impulse: in the plane the impulse is held
+/// to an interval, in space to a disc.
 template <int D, int W>
 [[gnu::always_inline]] inline void solve_friction(const StepContext<D>& context,
-                                                  ContactBlock<D, W>& block,
-                                                  typename ContactBlock<D, W>::Point& point,
-                                                  const Arms<D, Lanes<W>>& arms,
+                                                  ContactBlock<D, W>& block, std::uint32_t index,
                                                   MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   constexpr int kTangents = Dim<D>::kTangents;
-  const L bound = block.friction * (point.normal_impulse + point.bounce_impulse);
+  auto& point = block.points[index];
+  const Arms<D, L> arms = arms_of(block, point);
+  L pushes = point.normal_impulse;
+  if (block.bounces) pushes += block.extra->bounce_impulse[index];
+  const L bound = block.friction * pushes;
   L speed[kTangents];
   L wanted[kTangents];
   for (int t = 0; t < kTangents; ++t) {
-    speed[t] = relative_speed(block.tangent[t], arms, a, b);
+    speed[t] = relative_speed(tangent_of(block, t), arms, a, b);
     wanted[t] = point.tangent_impulse[t] -
                 L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed[t];
   }
@@ -258,7 +174,7 @@ template <int D, int W>
   hold_to_cone<kTangents>(bound, wanted);
   Vec<D, L> impulse = Vec<D, L>::zero();
   for (int t = 0; t < kTangents; ++t) {
-    impulse += (wanted[t] - point.tangent_impulse[t]) * block.tangent[t];
+    impulse += (wanted[t] - point.tangent_impulse[t]) * tangent_of(block, t);
     point.tangent_impulse[t] = wanted[t];
   }
   apply_pair(impulse, arms, block, a, b);
@@ -282,10 +198,10 @@ template <int D, int W>
 template <int D, int W>
 [[gnu::always_inline]] inline Lanes<W> normal_change(
     const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
-    const typename ContactBlock<D, W>::Point& point, const MotionLanes<D, W>& a,
-    const MotionLanes<D, W>& b) {
-  const Lanes<W> speed = relative_speed(block.normal, point.arms, a, b);
-  const NormalRow<W> row = normal_row(context, sweep, block, point, speed);
+    const SoftnessLanes<W>& soft, const typename ContactBlock<D, W>::Point& point,
+    const Arms<D, Lanes<W>>& arms, const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
+  const Lanes<W> speed = relative_speed(block.normal, arms, a, b);
+  const NormalRow<W> row = normal_row(context, sweep, block, soft, point, speed);
   if (sweep != Sweep::kBiased) return -point.normal_mass * (speed + row.bias);
   return -point.normal_mass * row.mass_scale * (speed + row.bias) -
          row.impulse_scale * point.normal_impulse;
@@ -295,11 +211,13 @@ template <int D, int W>
 template <int D, int W>
 [[gnu::always_inline]] inline void solve_normal(const StepContext<D>& context, Sweep sweep,
                                                 ContactBlock<D, W>& block,
+                                                const SoftnessLanes<W>& soft,
                                                 typename ContactBlock<D, W>::Point& point,
                                                 MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
-  const Lanes<W> change = normal_change(context, sweep, block, point, a, b);
-  set_normal_impulse(point.normal_impulse + Lanes<W>(context.tuning.over_relaxation) * change,
-                     point.arms, block, point, a, b);
+  const Arms<D, Lanes<W>> arms = arms_of(block, point);
+  const Lanes<W> change = normal_change(context, sweep, block, soft, point, arms, a, b);
+  set_normal_impulse(point.normal_impulse + Lanes<W>(context.tuning.over_relaxation) * change, arms,
+                     block, point, a, b);
 }
 
 }  // namespace cycloid::solver

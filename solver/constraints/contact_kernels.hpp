@@ -23,9 +23,10 @@ struct RestBounds {
 
 /// Of what is solved at once because springs would give way.
 struct LoadBounds {
-  float yield;         ///< yield_of the spring between two bodies that move, s.
-  float yield_static;  ///< Of that against one that does not.
-  float most;          ///< m.
+  bool asked = false;         ///< Else no contact is looked at.
+  float yield = 0.0f;         ///< yield_of the spring between two bodies that move, s.
+  float yield_static = 0.0f;  ///< Of that against one that does not.
+  float most = 0.0f;          ///< m.
 };
 
 /// What is done to contacts in lanes, compiled for each width: contact_kernels.cpp and
@@ -33,8 +34,9 @@ struct LoadBounds {
 template <int D, int W>
 struct ContactKernels {
   /// What follows from the numbers of each lane once they are there: tangents, effective masses,
-  /// shares, softness, and the coefficient of friction, whose square stands in its place.
-  static void complete(const StepContext<D>& context, const BlockRange<D, W>& range);
+  /// shares, the coefficient of friction, whose square stands in its place, and which lanes carry
+  /// more than springs hold within the bounds (ContactBlock::loaded).
+  static void complete(const LoadBounds& bounds, const BlockRange<D, W>& range);
   /// Normal, arms and separation of pairs of balls at the present poses (follow_round).
   static void follow(const BlockRange<D, W>& range);
   /// Effective masses once more in the lanes where `wanted` is not 0: of bodies whose inertia has
@@ -46,9 +48,6 @@ struct ContactKernels {
   static void bounce(const StepContext<D>& context, const BlockRange<D, W>& range);
   /// v += M^-1 J^T lambda.
   static void warm_start(const BlockRange<D, W>& range);
-  /// Which lanes carry more than springs of so much yield (yield_of) hold within `most`, m:
-  /// ContactBlock::loaded.
-  static void look_for_load(const LoadBounds& bounds, const BlockRange<D, W>& range);
   /// What the warm start has left to do: ContactBlock::misses and stirs.
   static void look_for_rest(const StepContext<D>& context, const RestBounds& bounds,
                             const BlockRange<D, W>& range);

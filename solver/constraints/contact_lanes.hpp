@@ -47,11 +47,12 @@ void set_effective_masses(const Lanes<W>& wanted, ContactBlock<D, W>& block) {
   for (std::uint32_t p = 0; p < block.point_count; ++p) {
     auto& point = block.points[p];
     const auto exists = point.normal_mass > L(0.0f);
+    const Vec<D, L> r_b = arm_b_of(block, point);
     const auto set = [&](const Vec<D, L>& direction, L& mass) {
-      const L now = select(exists, effective_mass(block, point.r_a, point.r_b, direction), L(0.0f));
+      const L now = select(exists, effective_mass(block, point.r_a, r_b, direction), L(0.0f));
       mass = select(wanted > L(0.0f), now, mass);
     };
-    for (int t = 0; t < Dim<D>::kTangents; ++t) set(block.tangent[t], point.tangent_mass[t]);
+    for (int t = 0; t < Dim<D>::kTangents; ++t) set(tangent_of(block, t), point.tangent_mass[t]);
     set(block.normal, point.normal_mass);
   }
 }

@@ -10,9 +10,8 @@ template <int D, int W>
 Arms<D, Lanes<W>> turned_arms(const ContactBlock<D, W>& block,
                               const typename ContactBlock<D, W>::Point& point,
                               const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
-  const Vec<D, Lanes<W>> turned_a = rotate(a.delta_rotation, point.r_a) - point.r_a;
-  const Vec<D, Lanes<W>> turned_b = rotate(b.delta_rotation, point.r_b) - point.r_b;
-  return {point.r_a + block.turns_a * turned_a, point.r_b + block.turns_b * turned_b};
+  const Arms<D, Lanes<W>> turned = turned_away<D, W>(block, point, a, b);
+  return {point.r_a + turned.r_a, arm_b_of(block, point) + turned.r_b};
 }
 
 /// x += M^-1 J^T lambda on the poses of both bodies. Units of lambda: kg m.
@@ -132,22 +131,24 @@ void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
     const L error = max(separation_of(block, point, a, b), deepest);
     const L k = coupling(block, block.normal, arms, block.normal, arms);
     const L change = select(point.normal_mass > L(0.0f), -error / max(k, L(1.0e-30f)), L(0.0f));
-    const L total = max(point.position_impulse + change, L(0.0f));
-    move_pair((total - point.position_impulse) * block.normal, arms, block, a, b);
-    point.position_impulse = total;
+    L& impulse = block.extra->position_impulse[i];
+    const L total = max(impulse + change, L(0.0f));
+    move_pair((total - impulse) * block.normal, arms, block, a, b);
+    impulse = total;
     if (!block.rubs) continue;
     // Friction holds the material points, which turn with balls too.
-    const Vec<D, L> slip =
-        ((b.delta_position + rotate(b.delta_rotation, point.r_b)) -
-         (before_b.delta_position + rotate(before_b.delta_rotation, point.r_b))) -
-        ((a.delta_position + rotate(a.delta_rotation, point.r_a)) -
-         (before_a.delta_position + rotate(before_a.delta_rotation, point.r_a)));
+    const Vec<D, L> r_b = arm_b_of(block, point);
+    const Vec<D, L> slip = ((b.delta_position + rotate(b.delta_rotation, r_b)) -
+                            (before_b.delta_position + rotate(before_b.delta_rotation, r_b))) -
+                           ((a.delta_position + rotate(a.delta_rotation, point.r_a)) -
+                            (before_a.delta_position + rotate(before_a.delta_rotation, point.r_a)));
     const Arms<D, L> now = turned_arms<D, W>(block, point, a, b);
     Vec<D, L> lambda = Vec<D, L>::zero();
     L square(0.0f);
     for (int t = 0; t < Dim<D>::kTangents; ++t) {
-      const L part = -point.tangent_mass[t] * dot(slip, block.tangent[t]);
-      lambda += part * block.tangent[t];
+      const Vec<D, L> tangent = tangent_of(block, t);
+      const L part = -point.tangent_mass[t] * dot(slip, tangent);
+      lambda += part * tangent;
       square += part * part;
     }
     const L bound = block.friction * total;
@@ -167,18 +168,20 @@ void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& bl
   using L = Lanes<W>;
   MotionLanes<D, W> a = gather<D, W>(motions, block.body_a);
   MotionLanes<D, W> b = gather<D, W>(motions, block.body_b);
+  slide(block, a, b);  // The projection has moved both.
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
-    point.normal_impulse = point.position_impulse * L(context.inverse_h);
-    const Arms<D, L> arms = arms_of(block, point, a, b);
+    L& impulse = block.extra->position_impulse[i];
+    point.normal_impulse = impulse * L(context.inverse_h);
+    const Arms<D, L> arms = arms_of(block, point);
     const L speed = relative_speed(block.normal, arms, a, b);
-    const L stop = select(point.position_impulse > L(0.0f), -point.normal_mass * speed, L(0.0f));
+    const L stop = select(impulse > L(0.0f), -point.normal_mass * speed, L(0.0f));
     apply_pair(stop * block.normal, arms, block, a, b);
-    for (L& impulse : point.tangent_impulse) impulse = L(0.0f);
-    if (block.rubs) solve_friction(context, block, point, arms, a, b);
-    point.position_impulse = L(0.0f);
+    for (L& tangent : point.tangent_impulse) tangent = L(0.0f);
+    if (block.rubs) solve_friction(context, block, i, a, b);
+    impulse = L(0.0f);
   }
-  for (L& impulse : block.rolling_impulse.v) impulse = L(0.0f);
+  for (L& rolling : block.extra->rolling_impulse.v) rolling = L(0.0f);
   if (block.rolls) solve_rolling(block, a, b);
   scatter(a, block.moves_a, block.body_a, motions);
   scatter(b, block.moves_b, block.body_b, motions);

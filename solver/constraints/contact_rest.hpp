@@ -38,8 +38,9 @@ template <int D, int W>
                                                   const MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   const auto exists = point.normal_mass > L(0.0f);
+  const Arms<D, L> arms = arms_of(block, point);
   const L until = select(point.gap > L(0.0f), point.gap * L(context.inverse_h), L(0.0f));
-  const L speed = relative_speed(block.normal, point.arms, a, b) + until;
+  const L speed = relative_speed(block.normal, arms, a, b) + until;
   const L held = point.normal_impulse / select(exists, point.normal_mass, L(1.0f));
   L missing = select(speed > L(0.0f), min(speed, held), -speed);
   if (block.rubs) {
@@ -47,7 +48,7 @@ template <int D, int W>
     L square(0.0f);
     L fastest(0.0f);
     for (int t = 0; t < Dim<D>::kTangents; ++t) {
-      const L along = relative_speed(block.tangent[t], point.arms, a, b);
+      const L along = relative_speed(tangent_of(block, t), arms, a, b);
       const L natural = point.tangent_impulse[t] - point.tangent_mass[t] * along;
       square += natural * natural;
       fastest = max(fastest, max(along, -along));
@@ -88,11 +89,8 @@ template <int D, int W>
                                                    ContactBlock<D, W>& block, MotionLanes<D, W>& a,
                                                    MotionLanes<D, W>& b) {
   using L = Lanes<W>;
-  L is_settled(0.0f);
-  for (int lane = 0; lane < kLaneCount<W>; ++lane)
-    is_settled.raw[lane] = (block.settled >> lane & 1) != 0 ? 1.0f : 0.0f;
-  const auto keep = is_settled > L(0.0f);
-  const Spin<D, L> rolling = block.rolling_impulse;
+  const auto keep = mask_of<W>(block.settled);
+  const Spin<D, L> rolling = block.rolls ? block.extra->rolling_impulse : Spin<D, L>::zero();
   L normal[Dim<D>::kManifoldPoints];
   L tangent[Dim<D>::kManifoldPoints][Dim<D>::kTangents];
   for (std::uint32_t p = 0; p < block.point_count; ++p) {
@@ -106,8 +104,10 @@ template <int D, int W>
     for (int t = 0; t < Dim<D>::kTangents; ++t)
       point.tangent_impulse[t] = select(keep, tangent[p][t], point.tangent_impulse[t]);
   }
-  for (int i = 0; i < Dim<D>::kSpin; ++i)
-    block.rolling_impulse[i] = select(keep, rolling[i], block.rolling_impulse[i]);
+  for (int i = 0; i < Dim<D>::kSpin && block.rolls; ++i) {
+    L& impulse = block.extra->rolling_impulse[i];
+    impulse = select(keep, rolling[i], impulse);
+  }
 }
 
 }  // namespace cycloid::solver

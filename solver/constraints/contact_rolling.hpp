@@ -11,12 +11,13 @@ float twist_resistance(const Material& a, const Material& b) {
 }
 
 /// The rolling moment in the plane: an interval. `spin` is that of b over a, rad/s.
-template <class Block, class L>
-Vec<1, L> rolling_moment(const Block& block, const L& normal_impulse, const Vec<1, L>& spin) {
+template <class Block, class Extra, class L>
+Vec<1, L> rolling_moment(const Block& block, const Extra& extra, const L& normal_impulse,
+                         const Vec<1, L>& spin) {
   const L k = block.mass_a.inverse_inertia[0] + block.mass_b.inverse_inertia[0];
   const L mass = select(k > L(0.0f), L(1.0f) / select(k > L(0.0f), k, L(1.0f)), L(0.0f));
-  L wanted[1] = {block.rolling_impulse[0] - mass * spin[0]};
-  hold_to_cone<1>(block.rolling * normal_impulse, wanted);
+  L wanted[1] = {extra.rolling_impulse[0] - mass * spin[0]};
+  hold_to_cone<1>(extra.rolling * normal_impulse, wanted);
   return {{wanted[0]}};
 }
 
@@ -24,9 +25,9 @@ Vec<1, L> rolling_moment(const Block& block, const L& normal_impulse, const Vec<
 /// own. Across, the moment that stops the rolling is taken where the disc has it. Where it has not,
 /// a step of 1 / (largest eigenvalue) against the spin, held to the disc, finds the moment against
 /// the spin also for bodies that turn more easily about one direction than about the other.
-template <int W, class Block>
-Vec<3, Lanes<W>> rolling_moment(const Block& block, const Lanes<W>& normal_impulse,
-                                const Vec<3, Lanes<W>>& spin) {
+template <int W, class Block, class Extra>
+Vec<3, Lanes<W>> rolling_moment(const Block& block, const Extra& extra,
+                                const Lanes<W>& normal_impulse, const Vec<3, Lanes<W>>& spin) {
   using L = Lanes<W>;
   constexpr int kSpace = 3;
   const L zero(0.0f);
@@ -38,8 +39,8 @@ Vec<3, Lanes<W>> rolling_moment(const Block& block, const Lanes<W>& normal_impul
   const auto inverse = [&](const L& k) { return one / select(k > zero, k, one); };
   const Vec<kSpace, L>& normal = block.normal;
   const L k_twist = dot(normal, turned(normal));
-  const L twisted = dot(block.rolling_impulse, normal);
-  const L most_twist = block.twist * normal_impulse;
+  const L twisted = dot(extra.rolling_impulse, normal);
+  const L most_twist = extra.twist * normal_impulse;
   const L stop = twisted - inverse(k_twist) * dot(normal, spin);
   const L twist = select(k_twist > zero, max(-most_twist, min(stop, most_twist)), zero);
   const Vec<kSpace, L> left = spin + turned((twist - twisted) * normal);
@@ -51,13 +52,13 @@ Vec<3, Lanes<W>> rolling_moment(const Block& block, const Lanes<W>& normal_impul
   const L k11 = dot(across[1], turned(across[1]));
   const L w0 = dot(across[0], left);
   const L w1 = dot(across[1], left);
-  const L old0 = dot(block.rolling_impulse, across[0]);
-  const L old1 = dot(block.rolling_impulse, across[1]);
+  const L old0 = dot(extra.rolling_impulse, across[0]);
+  const L old1 = dot(extra.rolling_impulse, across[1]);
   const L determinant = k00 * k11 - k01 * k01;
   const L over = inverse(determinant);
   const L stop0 = old0 - over * (k11 * w0 - k01 * w1);
   const L stop1 = old1 - over * (k00 * w1 - k01 * w0);
-  const L most = block.rolling * normal_impulse;
+  const L most = extra.rolling * normal_impulse;
   const L sum = k00 + k11;
   const L inside = select(most * most < stop0 * stop0 + stop1 * stop1, zero, one);
   const L stops = select(determinant > L(1.0e-6f) * sum * sum, inside, zero);
@@ -80,9 +81,10 @@ void solve_rolling(ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<
   L normal_impulse = L(0.0f);
   for (std::uint32_t i = 0; i < block.point_count; ++i)
     normal_impulse += block.points[i].normal_impulse;
-  const Spin<D, L> wanted = rolling_moment(block, normal_impulse, b.spin - a.spin);
-  const Spin<D, L> change = wanted - block.rolling_impulse;
-  block.rolling_impulse = wanted;
+  ContactExtra<D, W>& extra = *block.extra;
+  const Spin<D, L> wanted = rolling_moment(block, extra, normal_impulse, b.spin - a.spin);
+  const Spin<D, L> change = wanted - extra.rolling_impulse;
+  extra.rolling_impulse = wanted;
   turn_pair(change, block, a, b);
 }
 

@@ -13,8 +13,8 @@ namespace cycloid::solver {
 /// called here is a template on W or always inlined, so that those compiled for one instruction set
 /// have names of their own.
 
-/// Velocities of both bodies; also their poses, and from them the arms, where positions have moved
-/// since.
+/// Velocities of both bodies; also their poses, and from them slides and gaps, where positions have
+/// moved since.
 template <int D, int W>
 [[gnu::always_inline]] inline void gather_pair(const BlockRange<D, W>& range,
                                                ContactBlock<D, W>& block, MotionLanes<D, W>& a,
@@ -40,30 +40,21 @@ template <int D, int W>
 
 /// Unused lanes keep their zeros.
 template <int D, int W>
-[[gnu::always_inline]] inline void soften(const StepContext<D>& context,
-                                          ContactBlock<D, W>& block) {
+[[gnu::always_inline]] inline void share_points(ContactBlock<D, W>& block) {
   using L = Lanes<W>;
   const auto used = block.points[0].normal_mass > L(0.0f);
-  const auto b_moves = block.mass_b.inverse_mass > L(0.0f);
-  const auto a_moves = block.mass_a.inverse_mass > L(0.0f);
-  const auto of_pair = [&](float both, float one) {
-    return select(used, select(a_moves, select(b_moves, L(both), L(one)), L(one)), L(0.0f));
-  };
-  block.bias_rate = of_pair(context.contact.bias_rate, context.contact_static.bias_rate);
-  block.mass_scale = of_pair(context.contact.mass_scale, context.contact_static.mass_scale);
-  block.impulse_scale =
-      of_pair(context.contact.impulse_scale, context.contact_static.impulse_scale);
   const L sum = block.mass_a.inverse_mass + block.mass_b.inverse_mass;
   block.share_b = select(used, block.mass_b.inverse_mass / select(used, sum, L(1.0f)), L(0.0f));
 }
 
 template <int D, int W>
-void ContactKernels<D, W>::complete(const StepContext<D>& context, const BlockRange<D, W>& range) {
+void ContactKernels<D, W>::complete(const LoadBounds& bounds, const BlockRange<D, W>& range) {
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
-    soften(context, *block);
+    share_points(*block);
     block->friction = sqrt(block->friction);
-    tangents(block->normal, block->tangent);
+    set_tangents(*block);
     set_effective_masses(Lanes<W>(1.0f), *block);
+    if (bounds.asked) find_load(bounds, *block);
   }
 }
 
@@ -81,8 +72,8 @@ void ContactKernels<D, W>::weigh(const float (&wanted)[kLaneCount<W>], ContactBl
 template <int D, int W>
 void ContactKernels<D, W>::forget_bounces(const BlockRange<D, W>& range) {
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
-    for (std::uint32_t i = 0; i < block->point_count; ++i)
-      block->points[i].bounce_impulse = Lanes<W>(0.0f);
+    for (std::uint32_t i = 0; i < block->point_count && block->bounces; ++i)
+      block->extra->bounce_impulse[i] = Lanes<W>(0.0f);
 }
 
 template <int D, int W>
@@ -118,20 +109,23 @@ template <Sweep kSweep, int D, int W, int kBlocks>
                                                ContactBlock<D, W>* blocks) {
   MotionLanes<D, W> a[kBlocks];
   MotionLanes<D, W> b[kBlocks];
+  SoftnessLanes<W> soft[kBlocks];
   std::uint32_t points = 0;
   for (int k = 0; k < kBlocks; ++k) {
     gather_pair(range, blocks[k], a[k], b[k]);
+    if (kSweep == Sweep::kBiased) soft[k] = softness_of(context, blocks[k]);
     points = points < blocks[k].point_count ? blocks[k].point_count : points;
+  }
+  for (std::uint32_t i = 0; i < points; ++i) {
+    const std::uint32_t p = point_in_turn(context, kSweep, i, points);
+    for (int k = 0; k < kBlocks; ++k)
+      if (p < blocks[k].point_count)
+        solve_normal(context, kSweep, blocks[k], soft[k], blocks[k].points[p], a[k], b[k]);
   }
   for (std::uint32_t i = 0; i < points; ++i)
     for (int k = 0; k < kBlocks; ++k)
-      if (i < blocks[k].point_count)
-        solve_normal(context, kSweep, blocks[k], blocks[k].points[i], a[k], b[k]);
-  for (std::uint32_t i = 0; i < points; ++i)
-    for (int k = 0; k < kBlocks; ++k)
       if (blocks[k].rubs && i < blocks[k].point_count)
-        solve_friction(context, blocks[k], blocks[k].points[i], blocks[k].points[i].arms, a[k],
-                       b[k]);
+        solve_friction(context, blocks[k], i, a[k], b[k]);
   for (int k = 0; k < kBlocks; ++k) scatter_pair(range, blocks[k], a[k], b[k]);
 }
 
@@ -156,12 +150,6 @@ template <int D, int W>
   sweep_unsettled(context, block, a, b);
   scatter(a, block.moves_a & ~block.settled, block.body_a, range.motions);
   scatter(b, block.moves_b & ~block.settled, block.body_b, range.motions);
-}
-
-template <int D, int W>
-void ContactKernels<D, W>::look_for_load(const LoadBounds& bounds, const BlockRange<D, W>& range) {
-  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
-    find_load(bounds, *block);
 }
 
 template <int D, int W>

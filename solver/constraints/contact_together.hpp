@@ -73,10 +73,12 @@ template <int D, int W>
 void solve_normals_where(const Lanes<W>& wanted, const StepContext<D>& context, Sweep sweep,
                          ContactBlock<D, W>& block, MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   using L = Lanes<W>;
+  const SoftnessLanes<W> soft = softness_of(context, block);
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
-    const L change = normal_change(context, sweep, block, point, a, b);
-    set_normal_impulse(point.normal_impulse + wanted * change, point.arms, block, point, a, b);
+    const Arms<D, L> arms = arms_of(block, point);
+    const L change = normal_change(context, sweep, block, soft, point, arms, a, b);
+    set_normal_impulse(point.normal_impulse + wanted * change, arms, block, point, a, b);
   }
 }
 
@@ -109,16 +111,17 @@ Lanes<W> solve_manifold(const StepContext<D>& context, Sweep sweep, ContactBlock
   using L = Lanes<W>;
   constexpr int kPoints = Dim<D>::kManifoldPoints;
   const int count = static_cast<int>(block.point_count);
+  const SoftnessLanes<W> soft = softness_of(context, block);
   Arms<D, L> arms[kPoints];
   L old[kPoints];
   L compliance[kPoints];
   NormalProblem<kPoints, L> problem;
   for (int i = 0; i < count; ++i) {
     const auto& point = block.points[i];
-    arms[i] = point.arms;
+    arms[i] = arms_of(block, point);
     old[i] = point.normal_impulse;
     const L speed = relative_speed(block.normal, arms[i], a, b);
-    const NormalRow<W> row = normal_row(context, sweep, block, point, speed);
+    const NormalRow<W> row = normal_row(context, sweep, block, soft, point, speed);
     const auto scaled = row.mass_scale > L(0.0f);  // Not in unused lanes.
     compliance[i] = L(1.0f) / select(scaled, row.mass_scale, L(1.0f)) - L(1.0f);
     problem.d[i] = speed + row.bias;
@@ -150,14 +153,15 @@ Lanes<W> solve_two_normals(const StepContext<D>& context, Sweep sweep, ContactBl
   L usable(0.0f);
   if (block.point_count == 2) {
     typename ContactBlock<D, W>::Point* points[2] = {&block.points[0], &block.points[1]};
+    const SoftnessLanes<W> soft = softness_of(context, block);
     Arms<D, L> arms[2];
     L d[2];
     L compliance[2];
     L diagonal[2];
     for (int i = 0; i < 2; ++i) {
-      arms[i] = points[i]->arms;
+      arms[i] = arms_of(block, *points[i]);
       const L speed = relative_speed(block.normal, arms[i], a, b);
-      const NormalRow<W> row = normal_row(context, sweep, block, *points[i], speed);
+      const NormalRow<W> row = normal_row(context, sweep, block, soft, *points[i], speed);
       diagonal[i] = coupling(block, block.normal, arms[i], block.normal, arms[i]);
       compliance[i] = diagonal[i] * (L(1.0f) / row.mass_scale - L(1.0f));
       d[i] = speed + row.bias;
@@ -205,17 +209,18 @@ void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlo
   using L = Lanes<W>;
   constexpr int kTangents = Dim<D>::kTangents;
   constexpr int kRows = 1 + kTangents;
+  const SoftnessLanes<W> soft = softness_of(context, block);
   for (std::uint32_t p = 0; p < block.point_count; ++p) {
     auto& point = block.points[p];
-    const Arms<D, L> arms = point.arms;
+    const Arms<D, L> arms = arms_of(block, point);
     const NormalRow<W> row =
-        normal_row(context, sweep, block, point, relative_speed(block.normal, arms, a, b));
+        normal_row(context, sweep, block, soft, point, relative_speed(block.normal, arms, a, b));
     Vec<D, L> directions[kRows];
     L old[kRows];
     directions[0] = block.normal;
     old[0] = point.normal_impulse;
     for (int t = 0; t < kTangents; ++t) {
-      directions[t + 1] = block.tangent[t];
+      directions[t + 1] = tangent_of(block, t);
       old[t + 1] = point.tangent_impulse[t];
     }
     L k[kRows][kRows];
@@ -234,11 +239,21 @@ void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlo
     set_normal_impulse(x[0], arms, block, point, a, b);
     Vec<D, L> impulse = Vec<D, L>::zero();
     for (int t = 0; t < kTangents; ++t) {
-      impulse += (x[t + 1] - old[t + 1]) * block.tangent[t];
+      impulse += (x[t + 1] - old[t + 1]) * tangent_of(block, t);
       point.tangent_impulse[t] = x[t + 1];
     }
     apply_pair(impulse, arms, block, a, b);
   }
+}
+
+/// The normals of a manifold one after the other, from either end in turn.
+template <int D, int W>
+void solve_normals_in_turn(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
+                           MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
+  const SoftnessLanes<W> soft = softness_of(context, block);
+  for (std::uint32_t i = 0; i < block.point_count; ++i)
+    solve_normal(context, sweep, block, soft,
+                 block.points[point_in_turn(context, sweep, i, block.point_count)], a, b);
 }
 
 /// One sweep over the block: normals first, so that friction is held to the impulse of this sweep.
@@ -253,13 +268,11 @@ void solve_block(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>&
   else if (together == ContactBlockRows::kNormalFriction && sweep != Sweep::kPseudo)
     solve_points_coupled(context, sweep, block, a, b);
   else
-    for (std::uint32_t i = 0; i < block.point_count; ++i)
-      solve_normal(context, sweep, block, block.points[i], a, b);
+    solve_normals_in_turn(context, sweep, block, a, b);
   if (sweep == Sweep::kPseudo) return;
   if (block.rolls) solve_rolling(block, a, b);
   if (block.rubs && together != ContactBlockRows::kNormalFriction)
-    for (std::uint32_t i = 0; i < block.point_count; ++i)
-      solve_friction(context, block, block.points[i], block.points[i].arms, a, b);
+    for (std::uint32_t i = 0; i < block.point_count; ++i) solve_friction(context, block, i, a, b);
 }
 
 }  // namespace cycloid::solver

@@ -31,25 +31,26 @@ template <int D, int W>
 bool bounce_points(const StepContext<D>& context, ContactBlock<D, W>& block, MotionLanes<D, W>& a,
                    MotionLanes<D, W>& b) {
   using L = Lanes<W>;
+  ContactExtra<D, W>& extra = *block.extra;
   bool any = false;
   const L zero(0.0f);
   const L h(context.h);
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
-    const Arms<D, L>& arms = point.arms;
+    const Arms<D, L> arms = arms_of(block, point);
     const L speed = relative_speed(block.normal, arms, a, b);
-    const L approach = speed + block.pull * h;
+    const L approach = speed + extra.pull * h;
     const L meets = select(point.gap + h * speed < zero, L(1.0f), zero);
     const L fast = select(approach < L(-context.tuning.restitution_threshold), meets, zero);
-    const L bounces = select(block.restitution > zero, fast, zero);
+    const L bounces = select(extra.restitution > zero, fast, zero);
     if (!any_above_zero(bounces)) continue;
     any = true;
-    const L rebound = rebound_speed(block.restitution, approach, point.gap, block.pull, h);
+    const L rebound = rebound_speed(extra.restitution, approach, point.gap, extra.pull, h);
     // With the arms where they are now: an effective mass of the tick's start would add energy.
     const L k = coupling(block, block.normal, arms, block.normal, arms);
     const L has_mass = select(point.normal_mass > zero, bounces, zero);
     const L impulse = has_mass * max(rebound - speed, zero) / select(k > zero, k, L(1.0f));
-    point.bounce_impulse += impulse;
+    extra.bounce_impulse[i] += impulse;
     apply_pair(impulse * block.normal, arms, block, a, b);
   }
   return any;

@@ -35,10 +35,12 @@ template struct InstantiateBounce<2, 4>;
 template struct InstantiateBounce<2, 8>;
 template struct InstantiateBounce<2, 16>;
 template struct InstantiateBounce<2, kAvx2Lanes>;
+template struct InstantiateBounce<2, kAvx512Lanes>;
 template struct InstantiateBounce<3, 1>;
 template struct InstantiateBounce<3, 4>;
 template struct InstantiateBounce<3, 8>;
 template struct InstantiateBounce<3, 16>;
 template struct InstantiateBounce<3, kAvx2Lanes>;
+template struct InstantiateBounce<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

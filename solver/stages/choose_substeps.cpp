@@ -75,10 +75,12 @@ template struct InstantiateSubsteps<2, 4>;
 template struct InstantiateSubsteps<2, 8>;
 template struct InstantiateSubsteps<2, 16>;
 template struct InstantiateSubsteps<2, kAvx2Lanes>;
+template struct InstantiateSubsteps<2, kAvx512Lanes>;
 template struct InstantiateSubsteps<3, 1>;
 template struct InstantiateSubsteps<3, 4>;
 template struct InstantiateSubsteps<3, 8>;
 template struct InstantiateSubsteps<3, 16>;
 template struct InstantiateSubsteps<3, kAvx2Lanes>;
+template struct InstantiateSubsteps<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "solver/collision/collide.hpp"
+#include "solver/stages/live_contact.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -78,11 +79,9 @@ static void pass_old(const WorldState<D>& state, const PairCache<D>& cache, std:
   while (is_passed()) {
     const std::uint32_t begin = old;
     while (is_passed() && rests(state.contacts[old], cache)) ++old;
-    if (begin != old) {
+    if (begin != old)
       list.contacts.insert(list.contacts.end(), state.contacts.begin() + begin,
                            state.contacts.begin() + old);
-      list.manifolds.resize(list.contacts.size());
-    }
     if (!is_passed()) return;
     if (state.contacts[old].touching != 0) list.ended.push_back(old);
     ++old;
@@ -95,14 +94,13 @@ static void add_contact(const WorldState<D>& state, const ShapePair& pair,
                         const Manifold<D>& manifold, std::uint32_t& old, ContactList<D>& list) {
   const auto count = static_cast<std::uint32_t>(state.contacts.size());
   if (manifold.point_count == 0) return;
-  list.live_contacts.push_back(static_cast<int>(list.contacts.size()));
+  add_live(state, pair, manifold, static_cast<std::uint32_t>(list.contacts.size()), list.live);
   const bool persists = old < count && key_of(state.contacts[old]) == pair.key();
   const Contact<D>* before = persists ? &state.contacts[old] : nullptr;
   Contact<D>& contact = list.contacts.emplace_back();
   contact.shape_a = pair.shape_a;
   contact.shape_b = pair.shape_b;
   take_points(manifold, state.header.tuning.slop, before, contact);
-  list.manifolds.push_back(manifold);
   const bool touched = persists && before->touching != 0;
   if (contact.touching != 0 && !touched)
     list.began.push_back(static_cast<std::uint32_t>(list.contacts.size() - 1));
@@ -113,8 +111,7 @@ static void add_contact(const WorldState<D>& state, const ShapePair& pair,
 template <int D>
 static void clear(ContactList<D>& list) {
   list.contacts.clear();
-  list.manifolds.clear();
-  list.live_contacts.clear();
+  list.live.clear();
   list.began.clear();
   list.ended.clear();
 }
@@ -162,26 +159,23 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
     for (const std::uint32_t began : chunk.began)
       scratch.began.push_back(static_cast<std::uint32_t>(contacts) + began);
     scratch.ended.insert(scratch.ended.end(), chunk.ended.begin(), chunk.ended.end());
-    for (int& place : chunk.live_contacts) place += static_cast<int>(contacts);
+    for (LiveContact<D>& one : chunk.live) one.contact += static_cast<std::uint32_t>(contacts);
     contacts += chunk.contacts.size();
-    live += chunk.live_contacts.size();
+    live += chunk.live.size();
   }
   scratch.contacts.resize(contacts);
-  scratch.manifolds.resize(contacts);
-  scratch.live_contacts.resize(live);
+  scratch.live.resize(live);
   workers.parallel_for(static_cast<int>(chunks), 1, [&](Range range) {
     std::size_t contact = 0;
     std::size_t place = 0;
     const auto own = static_cast<std::size_t>(range.begin);
     for (std::size_t c = 0; c < own; ++c) {
       contact += scratch.contact_chunks[c].contacts.size();
-      place += scratch.contact_chunks[c].live_contacts.size();
+      place += scratch.contact_chunks[c].live.size();
     }
     const ContactList<D>& chunk = scratch.contact_chunks[own];
     std::copy(chunk.contacts.begin(), chunk.contacts.end(), scratch.contacts.begin() + contact);
-    std::copy(chunk.manifolds.begin(), chunk.manifolds.end(), scratch.manifolds.begin() + contact);
-    std::copy(chunk.live_contacts.begin(), chunk.live_contacts.end(),
-              scratch.live_contacts.begin() + place);
+    std::copy(chunk.live.begin(), chunk.live.end(), scratch.live.begin() + place);
   });
 }
 
@@ -189,9 +183,9 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
 /// which contacts began and ended.
 ///
 /// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes contacts,
-/// manifolds, which contacts are live, began and ended. Contacts are listed in the order of the
-/// pairs, which is that of the shapes' slots, beside the old ones in the same order. One thread
-/// lists them at once; of several each takes chunks of the pairs, whose lists are joined.
+/// which of them are live with their manifolds, began and ended. Contacts are listed in the order
+/// of the pairs, which is that of the shapes' slots, beside the old ones in the same order. One
+/// thread lists them at once; of several each takes chunks of the pairs, whose lists are joined.
 template <int D>
 void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
                    Workers& workers, StepScratch<D>& scratch) {
@@ -207,8 +201,7 @@ void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>
     ContactList<D>& list = scratch.contact_chunks[static_cast<std::size_t>(range.begin / kChunk)];
     clear(list);
     list.contacts.reserve(kChunk);
-    list.manifolds.reserve(kChunk);
-    list.live_contacts.reserve(kChunk);
+    list.live.reserve(kChunk);
     collide_range(collider, context, state, scratch, range, list);
   });
   join_lists(chunks, workers, scratch);

@@ -67,12 +67,12 @@ static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_
 /// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes;
 /// or, where the tuning asks for an order, one line of each.
 ///
-/// Reads joints, live contacts, shapes and the kinds of bodies; writes both colourings. Serial,
+/// Reads joints, live contacts and which bodies have mass; writes both colourings. Serial,
 /// because each choice depends on those before; a function of ids alone, so not of workers or
 /// history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
-  const auto moves = [&](std::uint32_t body) { return state.bodies[body].inverse_mass > 0.0f; };
+  const auto moves = [&](std::uint32_t body) { return scratch.has_mass[body] != 0; };
   std::vector<int>& joints = scratch.live_joints;
   joints.clear();
   for (int i = 0; i < static_cast<int>(state.joints.size()); ++i) {
@@ -80,14 +80,13 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
     if (joint.kind == JointKind::kFree) continue;
     if (scratch.awake[joint.body_a] != 0 || scratch.awake[joint.body_b] != 0) joints.push_back(i);
   }
-  const std::vector<int>& contacts = scratch.live_contacts;
+  const std::vector<LiveContact<D>>& contacts = scratch.live;
   const Order order = state.header.tuning.order;
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;
     list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
     name_slots(joints, scratch.joint_coloring);
     list_in_order(static_cast<int>(contacts.size()), reverse, scratch.contact_coloring);
-    name_slots(contacts, scratch.contact_coloring);
     return;
   }
   scratch.used_colors.assign(state.bodies.size(), 0);
@@ -105,14 +104,11 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   color_in_order(
       static_cast<int>(contacts.size()),
       [&](int i) {
-        const auto slot = static_cast<std::size_t>(contacts[static_cast<std::size_t>(i)]);
-        const Contact<D>& contact = scratch.contacts[slot];
-        const std::uint32_t a = state.shapes[contact.shape_a].body;
-        const std::uint32_t b = state.shapes[contact.shape_b].body;
-        return BodyPair{a, b, moves(a), moves(b)};
+        const LiveContact<D>& contact = contacts[static_cast<std::size_t>(i)];
+        return BodyPair{contact.body_a, contact.body_b, moves(contact.body_a),
+                        moves(contact.body_b)};
       },
       scratch.used_colors, scratch.color_of, scratch.contact_coloring);
-  name_slots(contacts, scratch.contact_coloring);
 }
 
 template void color(const WorldState<2>&, StepScratch<2>&);

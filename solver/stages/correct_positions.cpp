@@ -34,10 +34,12 @@ template struct InstantiateCorrect<2, 4>;
 template struct InstantiateCorrect<2, 8>;
 template struct InstantiateCorrect<2, 16>;
 template struct InstantiateCorrect<2, kAvx2Lanes>;
+template struct InstantiateCorrect<2, kAvx512Lanes>;
 template struct InstantiateCorrect<3, 1>;
 template struct InstantiateCorrect<3, 4>;
 template struct InstantiateCorrect<3, 8>;
 template struct InstantiateCorrect<3, 16>;
 template struct InstantiateCorrect<3, kAvx2Lanes>;
+template struct InstantiateCorrect<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

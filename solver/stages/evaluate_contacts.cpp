@@ -51,10 +51,12 @@ template struct InstantiateEvaluate<2, 4>;
 template struct InstantiateEvaluate<2, 8>;
 template struct InstantiateEvaluate<2, 16>;
 template struct InstantiateEvaluate<2, kAvx2Lanes>;
+template struct InstantiateEvaluate<2, kAvx512Lanes>;
 template struct InstantiateEvaluate<3, 1>;
 template struct InstantiateEvaluate<3, 4>;
 template struct InstantiateEvaluate<3, 8>;
 template struct InstantiateEvaluate<3, 16>;
 template struct InstantiateEvaluate<3, kAvx2Lanes>;
+template struct InstantiateEvaluate<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

@@ -33,13 +33,21 @@ static bool is_loaded(const StepContext<D>& context, const JointRow<D>& row) {
   return sqrt(square) * inverse_mass * yield_of(context.joint) > kJointYield;
 }
 
+template <int D>
+LoadBounds load_bounds(const StepContext<D>& context) {
+  if (context.tuning.contact_block != ContactBlockRows::kLoadedIsland ||
+      !solves_islands(context.tuning))
+    return {};
+  return {true, yield_of(context.contact), yield_of(context.contact_static), kContactYield};
+}
+
 /// Looks for what soft contacts and joints cannot hold up: with them overlap is load over frequency
 /// squared, whatever the number of substeps. The load is that of the last tick, which the state
 /// has; of joints between unequal masses it is not waited for.
 ///
-/// Reads masses and the impulses of blocks and joint rows; writes the loaded slots, one of each
-/// such pair, and whether islands are solved at all in this tick. Serial; which slots there are
-/// does not depend on the order.
+/// Reads masses, the loaded lanes of blocks and the impulses of joint rows; writes the loaded
+/// slots, one of each such pair, and whether islands are solved at all in this tick. Serial; which
+/// slots there are does not depend on the order.
 template <int D, int W>
 void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
@@ -50,9 +58,6 @@ void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
     solver.loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
   };
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  ContactKernels<D, W>::look_for_load(
-      {yield_of(context.contact), yield_of(context.contact_static), kContactYield},
-      block_range<D, W>(scratch, {0, static_cast<int>(blocks.size())}));
   for (const ContactBlock<D, W>& block : blocks)
     for (int lane = 0; lane < kLaneCount<W> && block.loaded >> lane != 0; ++lane)
       if ((block.loaded >> lane & 1) != 0) add(block.body_a[lane], block.body_b[lane]);
@@ -60,6 +65,9 @@ void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
     if (is_loaded(context, row)) add(row.body_a, row.body_b);
   solver.acts = !solver.loaded.empty();
 }
+
+template LoadBounds load_bounds(const StepContext<2>&);
+template LoadBounds load_bounds(const StepContext<3>&);
 
 template <int D, int W>
 struct InstantiateLoaded {
@@ -70,10 +78,12 @@ template struct InstantiateLoaded<2, 4>;
 template struct InstantiateLoaded<2, 8>;
 template struct InstantiateLoaded<2, 16>;
 template struct InstantiateLoaded<2, kAvx2Lanes>;
+template struct InstantiateLoaded<2, kAvx512Lanes>;
 template struct InstantiateLoaded<3, 1>;
 template struct InstantiateLoaded<3, 4>;
 template struct InstantiateLoaded<3, 8>;
 template struct InstantiateLoaded<3, 16>;
 template struct InstantiateLoaded<3, kAvx2Lanes>;
+template struct InstantiateLoaded<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

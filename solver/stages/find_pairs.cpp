@@ -145,6 +145,7 @@ static void move_boxes(const StepContext<D>& context, const WorldState<D>& state
   PairCache<D>& cache = scratch.pair_cache;
   const int count = static_cast<int>(state.bodies.size());
   scratch.active.assign(state.bodies.size(), 0);
+  scratch.has_mass.assign(state.bodies.size(), 0);
   scratch.leaving.clear();
   Tally asleep;
   const auto move = [&](Range range, std::vector<std::uint32_t>& leaving) {
@@ -154,6 +155,7 @@ static void move_boxes(const StepContext<D>& context, const WorldState<D>& state
       if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
       const std::uint8_t active = is_active(body) ? 1 : 0;
       scratch.active[static_cast<std::size_t>(i)] = active;
+      scratch.has_mass[static_cast<std::size_t>(i)] = body.inverse_mass > 0.0f ? 1 : 0;
       if (active == 0 && body.inverse_mass > 0.0f) ++asleep_here;
       if (body.first_shape == kNone) continue;
       if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
@@ -298,7 +300,7 @@ static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
 /// widened by the speculative distance and a tick's flight.
 ///
 /// Reads shapes, bodies and joints; writes the tree of static shapes, the pair cache, who is
-/// active, and pairs.
+/// active and who has mass, and pairs.
 /// Pairs are those of the boxes of this tick in the order of shape slots, so neither threads nor
 /// what the cache holds show in the result.
 /// @returns false, and no pairs, where there are far more than `limits.contacts`.

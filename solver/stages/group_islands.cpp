@@ -254,10 +254,12 @@ template struct InstantiateGroups<2, 4>;
 template struct InstantiateGroups<2, 8>;
 template struct InstantiateGroups<2, 16>;
 template struct InstantiateGroups<2, kAvx2Lanes>;
+template struct InstantiateGroups<2, kAvx512Lanes>;
 template struct InstantiateGroups<3, 1>;
 template struct InstantiateGroups<3, 4>;
 template struct InstantiateGroups<3, 8>;
 template struct InstantiateGroups<3, 16>;
 template struct InstantiateGroups<3, kAvx2Lanes>;
+template struct InstantiateGroups<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

@@ -40,8 +40,9 @@ static void gather_point(const StepContext<D>& context, const StepScratch<D>& sc
   const Motion<D>& motion_b = scratch.motions[block.body_b[lane]];
   const bool a_turns = can_turn<D>(scratch.masses[block.body_a[lane]]);
   const bool b_turns = can_turn<D>(scratch.masses[block.body_b[lane]]);
-  const Vec<D> r_a = lane_of(point.arms.r_a, lane);
-  const Vec<D> r_b = lane_of(point.arms.r_b, lane);
+  const Vec<D> at_start = lane_of(point.r_a, lane);
+  const Vec<D> r_a = at_start + lane_of(block.slide_a, lane);
+  const Vec<D> r_b = (at_start - lane_of(block.between, lane)) + lane_of(block.slide_b, lane);
   for (int i = 0; i < D; ++i) {
     group.arm_a[i] = static_cast<Wide>(a_turns ? r_a[i] : 0.0f);
     group.arm_b[i] = static_cast<Wide>(b_turns ? r_b[i] : 0.0f);
@@ -49,7 +50,7 @@ static void gather_point(const StepContext<D>& context, const StepScratch<D>& sc
   group.friction = static_cast<Wide>(block.friction.raw[lane]);
   group.count = group.friction > 0.0 ? 1 + Dim<D>::kTangents : 1;
   for (int r = 0; r < group.count; ++r) {
-    const Vec<D> direction = lane_of(r == 0 ? block.normal : block.tangent[r - 1], lane);
+    const Vec<D> direction = lane_of(r == 0 ? block.normal : tangent_of(block, r - 1), lane);
     const Spin<D> turn_a = moment(r_a, direction);
     const Spin<D> turn_b = moment(r_b, direction);
     for (int i = 0; i < D; ++i) {
@@ -246,10 +247,12 @@ template struct InstantiateIslandRows<2, 4>;
 template struct InstantiateIslandRows<2, 8>;
 template struct InstantiateIslandRows<2, 16>;
 template struct InstantiateIslandRows<2, kAvx2Lanes>;
+template struct InstantiateIslandRows<2, kAvx512Lanes>;
 template struct InstantiateIslandRows<3, 1>;
 template struct InstantiateIslandRows<3, 4>;
 template struct InstantiateIslandRows<3, 8>;
 template struct InstantiateIslandRows<3, 16>;
 template struct InstantiateIslandRows<3, kAvx2Lanes>;
+template struct InstantiateIslandRows<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

@@ -1,6 +1,7 @@
 #include <cstring>
 
 #include "solver/collision/collide.hpp"
+#include "solver/stages/live_contact.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trace.hpp"
 #include "solver/union_find.hpp"
@@ -54,10 +55,9 @@ static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scr
   const auto sleeps = [&](std::uint32_t body) {
     return scratch.active[body] == 0 && state.bodies[body].inverse_mass > 0.0f;
   };
-  for (const int live : scratch.live_contacts) {  // Of all others both bodies do nothing.
-    const Contact<D>& contact = scratch.contacts[static_cast<std::size_t>(live)];
-    const std::uint32_t a = state.shapes[contact.shape_a].body;
-    const std::uint32_t b = state.shapes[contact.shape_b].body;
+  for (const LiveContact<D>& live : scratch.live) {  // Of all others both bodies do nothing.
+    const std::uint32_t a = live.body_a;
+    const std::uint32_t b = live.body_b;
     if (scratch.active[a] == scratch.active[b]) continue;
     if (sleeps(a) || sleeps(b)) return true;
   }
@@ -74,14 +74,16 @@ static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scr
 template <int D>
 static void collide_woken(const StepContext<D>& context, const WorldState<D>& state,
                           StepScratch<D>& scratch) {
-  std::vector<int>& live = scratch.live_contacts;
-  live.clear();
-  for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
-    if (scratch.manifolds[i].point_count > 0) {
-      live.push_back(static_cast<int>(i));
+  const std::vector<LiveContact<D>>& before = scratch.live_before;
+  scratch.live_before.assign(scratch.live.begin(), scratch.live.end());
+  auto next = before.begin();
+  scratch.live.clear();
+  for (std::uint32_t i = 0; i < scratch.contacts.size(); ++i) {
+    if (next != before.end() && next->contact == i) {
+      scratch.live.push_back(*next++);
       continue;
     }
-    Contact<D>& contact = scratch.contacts[i];
+    const Contact<D>& contact = scratch.contacts[i];
     const Shape<D>& a = state.shapes[contact.shape_a];
     const Shape<D>& b = state.shapes[contact.shape_b];
     if (scratch.awake[a.body] == 0 && scratch.awake[b.body] == 0) continue;
@@ -91,9 +93,8 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
         collide(a, pose_a, b, pose_b, context.tuning.speculative_distance, state.polyhedra);
     // Neither body has moved since the contact was kept, so its points and impulses still belong to
     // each other; a contact that is gone all the same is solved as one without points.
-    if (manifold.point_count != contact.point_count) continue;
-    scratch.manifolds[i] = manifold;
-    if (manifold.point_count > 0) live.push_back(static_cast<int>(i));
+    if (manifold.point_count == 0 || manifold.point_count != contact.point_count) continue;
+    add_live(state, {contact.shape_a, contact.shape_b}, manifold, i, scratch.live);
   }
 }
 
@@ -137,8 +138,8 @@ static bool wake_by_islands(const WorldState<D>& state, StepScratch<D>& scratch)
 /// tick: a sleeping island wakes as a whole when one that moves touches it. Where none does, who is
 /// awake is who is active, and islands are not looked for; unless somebody writes the step down.
 ///
-/// Reads contacts, joints, bodies and who is active; writes islands, awake, kept_awake, the
-/// manifolds of contacts that woke, and which contacts are live. Serial; a function of ids alone.
+/// Reads contacts, joints, bodies and who is active; writes islands, awake, kept_awake, and the
+/// live contacts, where some woke. Serial; a function of ids alone.
 template <int D>
 void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch) {

@@ -119,10 +119,12 @@ template struct InstantiateHeld<2, 4>;
 template struct InstantiateHeld<2, 8>;
 template struct InstantiateHeld<2, 16>;
 template struct InstantiateHeld<2, kAvx2Lanes>;
+template struct InstantiateHeld<2, kAvx512Lanes>;
 template struct InstantiateHeld<3, 1>;
 template struct InstantiateHeld<3, 4>;
 template struct InstantiateHeld<3, 8>;
 template struct InstantiateHeld<3, 16>;
 template struct InstantiateHeld<3, kAvx2Lanes>;
+template struct InstantiateHeld<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

@@ -49,17 +49,15 @@ static constexpr float kPushShare = 0.25f;
 /// contacts are made, so that to lose that way matters. Cards, of which the slowest is fast, would
 /// otherwise pass through one another.
 template <int D>
-static void mark_pushed(const StepContext<D>& context, const WorldState<D>& state,
-                        StepScratch<D>& scratch) {
+static void mark_pushed(const StepContext<D>& context, StepScratch<D>& scratch) {
   const float near = context.tuning.speculative_distance;
   const auto mark = [&](std::uint32_t shape, float along, const Vec<D>& velocity) {
     if (scratch.fast_of_shape[shape] == 0) return;
     if (context.tick_s * along > near && along > kPushShare * length(velocity))
       scratch.fast_bodies[scratch.fast_of_shape[shape] - 1].is_pushed = true;
   };
-  for (const int live : scratch.live_contacts) {
-    const auto i = static_cast<std::size_t>(live);
-    const Contact<D>& contact = scratch.contacts[i];
+  for (const LiveContact<D>& live : scratch.live) {
+    const Contact<D>& contact = scratch.contacts[live.contact];
     const std::uint32_t a = contact.shape_a;
     const std::uint32_t b = contact.shape_b;
     if ((scratch.fast_of_shape[a] | scratch.fast_of_shape[b]) == 0) continue;
@@ -67,13 +65,13 @@ static void mark_pushed(const StepContext<D>& context, const WorldState<D>& stat
     for (std::uint32_t p = 0; p < contact.point_count; ++p)
       impulse += contact.points[p].normal_impulse;
     if (!(impulse > 0.0f)) continue;
-    const Manifold<D>& manifold = scratch.manifolds[i];
-    const auto velocity_of = [&](std::uint32_t shape, const Vec<D>& arm) {
-      const Motion<D>& motion = scratch.motions[state.shapes[shape].body];
+    const Manifold<D>& manifold = live.manifold;
+    const auto velocity_of = [&](std::uint32_t body, const Vec<D>& arm) {
+      const Motion<D>& motion = scratch.motions[body];
       return motion.velocity + spin_cross(motion.spin, arm);
     };
-    const Vec<D> velocity_a = velocity_of(a, manifold.points[0].anchor_a);
-    const Vec<D> velocity_b = velocity_of(b, manifold.points[0].anchor_b);
+    const Vec<D> velocity_a = velocity_of(live.body_a, manifold.points[0].anchor_a);
+    const Vec<D> velocity_b = velocity_of(live.body_b, manifold.points[0].anchor_b);
     const float along_a = dot(manifold.normal, velocity_a);
     const float along_b = dot(manifold.normal, velocity_b);
     mark(b, min(along_a, along_b), velocity_b);
@@ -149,7 +147,7 @@ void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Wo
   list_fast(context, state, workers, scratch);
   if (scratch.fast_bodies.empty()) return;
   mark_ways(context, state, scratch);
-  mark_pushed(context, state, scratch);
+  mark_pushed(context, scratch);
   const PairCache<D>& cache = scratch.pair_cache;
   const auto meets = [&](std::uint32_t fast, std::uint32_t other) {
     return scratch.fast_of_shape[fast] != 0 && overlaps(cache.boxes[other], scratch.ways[fast]);

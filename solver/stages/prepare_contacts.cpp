@@ -7,16 +7,18 @@
 
 namespace cycloid::solver {
 
-/// The numbers of one contact, before they take their lane. Dimension in, floats out.
-template <int D>
-struct ContactNumbers {
-  std::uint32_t body_a;
-  std::uint32_t body_b;
-  float square_friction;  ///< Of the pair's coefficient.
+/// What materials of a contact have to say besides friction.
+struct ContactMaterials {
   float restitution;
-  float rolling;  ///< m
-  float twist;    ///< m
+  float rolling_resistance;
+  float twist_resistance;
 };
+
+template <int D>
+static ContactMaterials materials_of(const Material& a, const Material& b) {
+  return {max(a.restitution, b.restitution), max(a.rolling_resistance, b.rolling_resistance),
+          twist_resistance<D>(a, b)};
+}
 
 /// What a shape rolls on; 0 for what has corners.
 template <int D>
@@ -26,38 +28,22 @@ static float rolling_radius(const Shape<D>& shape) {
 }
 
 template <int D>
-static ContactNumbers<D> numbers_of(const WorldState<D>& state, const Contact<D>& contact) {
-  const Shape<D>& a = state.shapes[contact.shape_a];
-  const Shape<D>& b = state.shapes[contact.shape_b];
-  const Material& material_a = state.materials[a.material];
-  const Material& material_b = state.materials[b.material];
-  const float radius = max(rolling_radius(a), rolling_radius(b));
-  return {a.body,
-          b.body,
-          material_a.friction * material_b.friction,
-          max(material_a.restitution, material_b.restitution),
-          max(material_a.rolling_resistance, material_b.rolling_resistance) * radius,
-          twist_resistance<D>(material_a, material_b) * radius};
-}
-
-template <int D>
 struct PointInput {
   const ManifoldPoint<D>& geometry;
   const ContactPoint<D>& impulses;
   float warm_starting;
+  bool rubs;  ///< Else the tangents begin at 0: a material may have lost its friction since.
 };
 
 template <int D, int W>
 static void set_point(typename ContactBlock<D, W>::Point& point, int lane,
                       const PointInput<D>& in) {
   set_lane(point.r_a, lane, in.geometry.anchor_a);
-  set_lane(point.r_b, lane, in.geometry.anchor_b);
   set_lane(point.separation, lane, in.geometry.separation);
   set_lane(point.normal_mass, lane, 1.0f);
   set_lane(point.normal_impulse, lane, in.warm_starting * in.impulses.normal_impulse);
-  for (int t = 0; t < Dim<D>::kTangents; ++t) {
+  for (int t = 0; t < Dim<D>::kTangents && in.rubs; ++t)
     set_lane(point.tangent_impulse[t], lane, in.warm_starting * in.impulses.tangent_impulse[t]);
-  }
 }
 
 /// What gravity and forces do to a body without contacts, m/s^2.
@@ -67,65 +53,77 @@ static Vec<D> free_acceleration(const StepContext<D>& context, const Body<D>& bo
   return body.gravity_scale * context.gravity + body.inverse_mass * body.force;
 }
 
-template <int D>
-static bool is_centred_ball(const Shape<D>& shape) {
-  return shape.kind == ShapeKind::kBall && length(shape.vertices[0]) <= 1.0e-6f * shape.radius;
+/// What balls about their centres of mass ask for.
+template <int D, int W>
+static void set_balls(const WorldState<D>& state, const Contact<D>& contact,
+                      const LiveContact<D>& live, int lane, ContactExtra<D, W>& extra,
+                      ContactBlock<D, W>& block) {
+  block.has_ball = true;
+  set_lane(extra.turns_a, lane, live.a_is_ball ? 0.0f : 1.0f);
+  set_lane(extra.turns_b, lane, live.b_is_ball ? 0.0f : 1.0f);
+  if (!live.a_is_ball || !live.b_is_ball) return;
+  set_lane(extra.is_round, lane, 1.0f);
+  set_lane(extra.radius_a, lane, state.shapes[contact.shape_a].radius);
+  set_lane(extra.radius_b, lane, state.shapes[contact.shape_b].radius);
+  block.follows = true;
 }
 
+/// What materials that bounce or resist rolling ask for.
 template <int D, int W>
-static void set_round(const WorldState<D>& state, const Contact<D>& contact, int lane,
-                      ContactBlock<D, W>& block) {
-  const Shape<D>& a = state.shapes[contact.shape_a];
-  const Shape<D>& b = state.shapes[contact.shape_b];
-  const bool round = is_centred_ball(a) && is_centred_ball(b);
-  set_lane(block.turns_a, lane, is_centred_ball(a) ? 0.0f : 1.0f);
-  set_lane(block.turns_b, lane, is_centred_ball(b) ? 0.0f : 1.0f);
-  if (!round) return;
-  set_lane(block.is_round, lane, 1.0f);
-  set_lane(block.radius_a, lane, a.radius);
-  set_lane(block.radius_b, lane, b.radius);
-  set_lane(block.centre_offset, lane,
-           state.bodies[b.body].position - state.bodies[a.body].position);
-  block.follows = true;
+static void set_materials(const StepContext<D>& context, const WorldState<D>& state,
+                          const Contact<D>& contact, const LiveContact<D>& live,
+                          const ContactMaterials& materials, int lane, ContactExtra<D, W>& extra,
+                          ContactBlock<D, W>& block) {
+  if (materials.restitution > 0.0f) {
+    const Vec<D> pulls = free_acceleration(context, state.bodies[live.body_a]) -
+                         free_acceleration(context, state.bodies[live.body_b]);
+    set_lane(extra.restitution, lane, materials.restitution);
+    set_lane(extra.pull, lane, max(dot(live.manifold.normal, pulls), 0.0f));
+    block.bounces = true;
+  }
+  if (materials.rolling_resistance == 0.0f && materials.twist_resistance == 0.0f) return;
+  const float radius = max(rolling_radius(state.shapes[contact.shape_a]),
+                           rolling_radius(state.shapes[contact.shape_b]));
+  if (radius == 0.0f) return;
+  set_lane(extra.rolling, lane, materials.rolling_resistance * radius);
+  set_lane(extra.twist, lane, materials.twist_resistance * radius);
+  set_lane(extra.rolling_impulse, lane, context.tuning.warm_starting * contact.rolling_impulse);
+  block.rolls = true;
 }
 
 template <int D, int W>
 static void set_contact(const StepContext<D>& context, const WorldState<D>& state,
-                        const StepScratch<D>& scratch, int index, int lane,
-                        ContactBlock<D, W>& block) {
-  const auto i = static_cast<std::size_t>(index);
-  const Contact<D>& contact = scratch.contacts[i];
-  const Manifold<D>& manifold = scratch.manifolds[i];
-  const ContactNumbers<D> numbers = numbers_of(state, contact);
-  block.body_a[lane] = numbers.body_a;
-  block.body_b[lane] = numbers.body_b;
-  block.contact[lane] = static_cast<std::uint32_t>(index);
-  const BodyMass<D>& mass_a = scratch.masses[numbers.body_a];
-  const BodyMass<D>& mass_b = scratch.masses[numbers.body_b];
+                        const StepScratch<D>& scratch, const LiveContact<D>& live, int lane,
+                        std::size_t place, ContactBlocks<D, W>& contacts) {
+  ContactBlock<D, W>& block = contacts.blocks[place];
+  const Contact<D>& contact = scratch.contacts[live.contact];
+  const Material& material_a = state.materials[live.material_a];
+  const Material& material_b = state.materials[live.material_b];
+  const BodyMass<D>& mass_a = scratch.masses[live.body_a];
+  const BodyMass<D>& mass_b = scratch.masses[live.body_b];
+  block.body_a[lane] = live.body_a;
+  block.body_b[lane] = live.body_b;
+  block.contact[lane] = live.contact;
   if (mass_a.inverse_mass != 0.0f) block.moves_a |= LaneBits{1} << lane;
   if (mass_b.inverse_mass != 0.0f) block.moves_b |= LaneBits{1} << lane;
   set_mass(block.mass_a, lane, mass_a);
   set_mass(block.mass_b, lane, mass_b);
-  set_lane(block.normal, lane, manifold.normal);
-  set_lane(block.friction, lane,
-           numbers.square_friction);  // ContactKernels::complete takes the root.
-  set_lane(block.restitution, lane, numbers.restitution);
-  set_lane(block.rolling, lane, numbers.rolling);
-  set_lane(block.twist, lane, numbers.twist);
-  set_lane(block.rolling_impulse, lane, context.tuning.warm_starting * contact.rolling_impulse);
-  if (numbers.restitution > 0.0f) {  // Only bounces ask for it.
-    const Vec<D> pulls = free_acceleration(context, state.bodies[numbers.body_a]) -
-                         free_acceleration(context, state.bodies[numbers.body_b]);
-    set_lane(block.pull, lane, max(dot(manifold.normal, pulls), 0.0f));
-  }
-  set_round(state, contact, lane, block);
+  set_lane(block.normal, lane, live.manifold.normal);
+  set_lane(block.between, lane, live.between);
+  const float square_friction = material_a.friction * material_b.friction;
+  set_lane(block.friction, lane, square_friction);  // ContactKernels::complete takes the root.
   block.turns = block.turns || can_turn(mass_a) || can_turn(mass_b);
-  block.rubs = block.rubs || numbers.square_friction > 0.0f;
-  block.rolls = block.rolls || numbers.rolling > 0.0f || numbers.twist > 0.0f;
-  block.bounces = block.bounces || numbers.restitution > 0.0f;
+  block.rubs = block.rubs || square_friction > 0.0f;
+  if (live.a_is_ball || live.b_is_ball)
+    set_balls(state, contact, live, lane, contacts.extra_of(place), block);
+  const ContactMaterials materials = materials_of<D>(material_a, material_b);
+  if (materials.restitution > 0.0f || materials.rolling_resistance > 0.0f ||
+      materials.twist_resistance > 0.0f)
+    set_materials(context, state, contact, live, materials, lane, contacts.extra_of(place), block);
   if (contact.point_count > block.point_count) block.point_count = contact.point_count;
   for (std::uint32_t p = 0; p < contact.point_count; ++p) {
-    const PointInput<D> in{manifold.points[p], contact.points[p], context.tuning.warm_starting};
+    const PointInput<D> in{live.manifold.points[p], contact.points[p], context.tuning.warm_starting,
+                           square_friction > 0.0f};
     set_point<D, W>(block.points[p], lane, in);
     block.has_point[p] |= LaneBits{1} << lane;
   }
@@ -149,8 +147,8 @@ static Range contacts_of_block(const Range& color, int block, int width) {
 
 /// Fills blocks of W contacts, colour by colour; the overflow gets one contact per block.
 ///
-/// Reads contacts, manifolds, materials, masses, bodies and colouring; writes the blocks of width
-/// W, each from its own contacts, so any split into ranges gives the same bits.
+/// Reads live contacts, their impulses, materials, masses, bodies and colouring; writes the blocks
+/// of width W, each from its own contacts, so any split into ranges gives the same bits.
 template <int D, int W>
 void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
@@ -166,25 +164,32 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
   }
   out.overflow = {blocks, blocks + coloring.overflow.end - coloring.overflow.begin};
   out.blocks.resize(static_cast<std::size_t>(out.overflow.end));
+  out.extras.resize(out.blocks.size());
+  const bool always_extra = context.tuning.stabilisation == Stabilisation::kXpbd ||
+                            context.tuning.stabilisation == Stabilisation::kSplitImpulse;
   const auto fill = [&](int block, Range members) {
-    auto& into = out.blocks[static_cast<std::size_t>(block)];
-    clear(resting, into);
+    const auto place = static_cast<std::size_t>(block);
+    clear(resting, out.blocks[place]);
+    if (always_extra) out.extra_of(place);
     for (int i = members.begin; i < members.end; ++i)
-      set_contact(context, state, scratch, coloring.order[static_cast<std::size_t>(i)],
-                  i - members.begin, into);
+      set_contact(
+          context, state, scratch,
+          scratch.live[static_cast<std::size_t>(coloring.order[static_cast<std::size_t>(i)])],
+          i - members.begin, place, out);
   };
+  const LoadBounds bounds = load_bounds(context);
   for (std::size_t c = 0; c < out.colors.size(); ++c) {
     const Range color = out.colors[c];
     workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
       for (int i = range.begin; i < range.end; ++i)
         fill(color.begin + i, contacts_of_block(coloring.colors[c], i, kLaneCount<W>));
+      ContactKernels<D, W>::complete(
+          bounds, block_range<D, W>(scratch, {color.begin + range.begin, color.begin + range.end}));
     });
   }
   for (int i = out.overflow.begin; i < out.overflow.end; ++i)
     fill(i, contacts_of_block(coloring.overflow, i - out.overflow.begin, 1));
-  workers.parallel_for(out.overflow.end, kBlockGrain, [&](Range range) {
-    ContactKernels<D, W>::complete(context, block_range<D, W>(scratch, range));
-  });
+  ContactKernels<D, W>::complete(bounds, block_range<D, W>(scratch, out.overflow));
   out.follows = false;
   out.bounces = false;
   for (const ContactBlock<D, W>& block : out.blocks) {
@@ -203,10 +208,12 @@ template struct InstantiatePrepare<2, 4>;
 template struct InstantiatePrepare<2, 8>;
 template struct InstantiatePrepare<2, 16>;
 template struct InstantiatePrepare<2, kAvx2Lanes>;
+template struct InstantiatePrepare<2, kAvx512Lanes>;
 template struct InstantiatePrepare<3, 1>;
 template struct InstantiatePrepare<3, 4>;
 template struct InstantiatePrepare<3, 8>;
 template struct InstantiatePrepare<3, 16>;
 template struct InstantiatePrepare<3, kAvx2Lanes>;
+template struct InstantiatePrepare<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

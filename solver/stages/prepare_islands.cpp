@@ -17,8 +17,9 @@ static bool is_swept(const JointRow<D>& row) {
 /// Whether a contact has: it bounces, or resists rolling.
 template <int D, int W>
 static bool is_swept(const ContactBlock<D, W>& block, int lane) {
-  return block.restitution.raw[lane] > 0.0f || block.rolling.raw[lane] > 0.0f ||
-         block.twist.raw[lane] > 0.0f;
+  return (block.bounces && block.extra->restitution.raw[lane] > 0.0f) ||
+         (block.rolls &&
+          (block.extra->rolling.raw[lane] > 0.0f || block.extra->twist.raw[lane] > 0.0f));
 }
 
 /// Finds the islands that sweeps act on in any case, and the lanes of no island.
@@ -49,23 +50,20 @@ static void find_swept(StepScratch<D>& scratch) {
   }
 }
 
-/// Takes a contact from the soft sweeps. What bounces has to come all the way.
+/// The gap of a contact that counts as none. What bounces has to come all the way.
 template <int D, int W>
-static void take_contact(float touch, int lane, ContactBlock<D, W>& block) {
-  if (!(block.restitution.raw[lane] > 0.0f)) {
-    block.touch.raw[lane] = touch;
-    block.touches = true;
-  }
-  block.bias_rate.raw[lane] = 0.0f;
-  block.mass_scale.raw[lane] = 1.0f;
-  block.impulse_scale.raw[lane] = 0.0f;
+static void set_touch(float touch, int lane, std::size_t place, ContactBlocks<D, W>& contacts) {
+  ContactBlock<D, W>& block = contacts.blocks[place];
+  if (block.bounces && block.extra->restitution.raw[lane] > 0.0f) return;
+  contacts.extra_of(place).touch.raw[lane] = touch;
+  block.touches = true;
 }
 
 /// Takes what islands hold from the soft sweeps.
 template <int D, int W>
 static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const float touch = kTouch * context.tuning.slop;
   for (std::size_t i = 0; i < solver.held.size(); ++i) {
     const int at = solver.held_in[i];
@@ -73,7 +71,7 @@ static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
     const HeldPair& pair = solver.held[i];
     const auto place = static_cast<std::size_t>(pair.place);
     if (pair.lane >= 0) {
-      take_contact(touch, pair.lane, blocks[place]);
+      set_touch(touch, pair.lane, place, contacts);
       continue;
     }
     scratch.joint_rows[place].in_island = true;
@@ -84,8 +82,8 @@ static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
 /// Sorts what touches or is jointed into islands, and takes what can be solved at once from the
 /// soft sweeps.
 ///
-/// Reads contact blocks, joint rows and masses; writes the island solver, the softness of the
-/// contacts that it takes and which joint rows it takes. Serial.
+/// Reads contact blocks, joint rows and masses; writes the island solver, and which contacts and
+/// joint rows it takes. Serial.
 template <int D, int W>
 void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
@@ -107,10 +105,12 @@ template struct InstantiatePlans<2, 4>;
 template struct InstantiatePlans<2, 8>;
 template struct InstantiatePlans<2, 16>;
 template struct InstantiatePlans<2, kAvx2Lanes>;
+template struct InstantiatePlans<2, kAvx512Lanes>;
 template struct InstantiatePlans<3, 1>;
 template struct InstantiatePlans<3, 4>;
 template struct InstantiatePlans<3, 8>;
 template struct InstantiatePlans<3, 16>;
 template struct InstantiatePlans<3, kAvx2Lanes>;
+template struct InstantiatePlans<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

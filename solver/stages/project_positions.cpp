@@ -82,10 +82,12 @@ template struct InstantiateProject<2, 4>;
 template struct InstantiateProject<2, 8>;
 template struct InstantiateProject<2, 16>;
 template struct InstantiateProject<2, kAvx2Lanes>;
+template struct InstantiateProject<2, kAvx512Lanes>;
 template struct InstantiateProject<3, 1>;
 template struct InstantiateProject<3, 4>;
 template struct InstantiateProject<3, 8>;
 template struct InstantiateProject<3, 16>;
 template struct InstantiateProject<3, kAvx2Lanes>;
+template struct InstantiateProject<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

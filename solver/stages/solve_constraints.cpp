@@ -71,7 +71,8 @@ static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>
             without_sign_of_zero(block.points[p].tangent_impulse[t].raw[lane]);
     }
     for (int i = 0; i < Dim<D>::kSpin; ++i)
-      contact.rolling_impulse[i] = without_sign_of_zero(block.rolling_impulse[i].raw[lane]);
+      contact.rolling_impulse[i] =
+          block.rolls ? without_sign_of_zero(block.extra->rolling_impulse[i].raw[lane]) : 0.0f;
   }
 }
 
@@ -97,10 +98,12 @@ template struct Instantiate<2, 4>;
 template struct Instantiate<2, 8>;
 template struct Instantiate<2, 16>;
 template struct Instantiate<2, kAvx2Lanes>;
+template struct Instantiate<2, kAvx512Lanes>;
 template struct Instantiate<3, 1>;
 template struct Instantiate<3, 4>;
 template struct Instantiate<3, 8>;
 template struct Instantiate<3, 16>;
 template struct Instantiate<3, kAvx2Lanes>;
+template struct Instantiate<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

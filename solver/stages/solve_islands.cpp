@@ -198,10 +198,12 @@ template struct InstantiateIslands<2, 4>;
 template struct InstantiateIslands<2, 8>;
 template struct InstantiateIslands<2, 16>;
 template struct InstantiateIslands<2, kAvx2Lanes>;
+template struct InstantiateIslands<2, kAvx512Lanes>;
 template struct InstantiateIslands<3, 1>;
 template struct InstantiateIslands<3, 4>;
 template struct InstantiateIslands<3, 8>;
 template struct InstantiateIslands<3, 16>;
 template struct InstantiateIslands<3, kAvx2Lanes>;
+template struct InstantiateIslands<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

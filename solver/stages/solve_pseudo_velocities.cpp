@@ -15,7 +15,7 @@ template <int D, int W>
 static void exchange_impulses(std::vector<ContactBlock<D, W>>& blocks) {
   for (ContactBlock<D, W>& block : blocks)
     for (std::uint32_t p = 0; p < block.point_count; ++p)
-      std::swap(block.points[p].normal_impulse, block.points[p].saved_impulse);
+      std::swap(block.points[p].normal_impulse, block.extra->saved_impulse[p]);
 }
 
 template <int D>
@@ -41,7 +41,7 @@ void solve_pseudo_velocities(const StepContext<D>& context, Workers& workers,
   scratch.saved_motions.assign(scratch.motions.size(), Motion<D>{});
   scratch.saved_rows = scratch.joint_rows;
   for (ContactBlock<D, W>& block : blocks)
-    for (auto& point : block.points) point.saved_impulse = Lanes<W>(0.0f);
+    for (Lanes<W>& impulse : block.extra->saved_impulse) impulse = Lanes<W>(0.0f);
   exchange_velocities(scratch.motions, scratch.saved_motions);
   exchange_impulses(blocks);
   forget_impulses(scratch.joint_rows);
@@ -61,10 +61,12 @@ template struct InstantiatePseudo<2, 4>;
 template struct InstantiatePseudo<2, 8>;
 template struct InstantiatePseudo<2, 16>;
 template struct InstantiatePseudo<2, kAvx2Lanes>;
+template struct InstantiatePseudo<2, kAvx512Lanes>;
 template struct InstantiatePseudo<3, 1>;
 template struct InstantiatePseudo<3, 4>;
 template struct InstantiatePseudo<3, 8>;
 template struct InstantiatePseudo<3, 16>;
 template struct InstantiatePseudo<3, kAvx2Lanes>;
+template struct InstantiatePseudo<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

@@ -48,6 +48,9 @@ template <int D>
 void factor_trees(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D>
 void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scratch);
+/// What contacts are looked at for load, as prepare_contacts completes them.
+template <int D>
+LoadBounds load_bounds(const StepContext<D>& context);
 template <int D, int W>
 void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>

@@ -56,10 +56,12 @@ static void write_state(const WorldState<D>& state, PhaseWriter& writer) {
 
 template <int D>
 static void write_contacts(const StepScratch<D>& scratch, PhaseWriter& writer) {
+  auto live = scratch.live.begin();
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
-    const Manifold<D>& manifold = scratch.manifolds[i];
+    Manifold<D> manifold;
     ContactFound<D> found;
     found.contact = scratch.contacts[i];
+    if (live != scratch.live.end() && live->contact == i) manifold = live++->manifold;
     if (manifold.point_count > 0) found.normal = manifold.normal;
     for (std::uint32_t p = 0; p < manifold.point_count; ++p) {
       const ManifoldPoint<D>& point = manifold.points[p];
@@ -76,11 +78,15 @@ static void write_islands(const StepScratch<D>& scratch, PhaseWriter& writer) {
                   BodyIsland{scratch.islands[i], scratch.awake[i], scratch.kept_awake[i]});
 }
 
-static void write_coloring(const char* kind, const Coloring& coloring, PhaseWriter& writer) {
+/// @param slot_of  What an entry of the order stands for.
+template <class SlotOf>
+static void write_coloring(const char* kind, const Coloring& coloring, SlotOf&& slot_of,
+                           PhaseWriter& writer) {
   std::vector<ColorPlace> places;
   const auto write_range = [&](Range range, std::uint32_t color) {
     for (int place = range.begin; place < range.end; ++place) {
-      const auto slot = static_cast<std::size_t>(coloring.order[static_cast<std::size_t>(place)]);
+      const std::size_t slot =
+          slot_of(static_cast<std::size_t>(coloring.order[static_cast<std::size_t>(place)]));
       if (slot >= places.size()) places.resize(slot + 1);
       places[slot] = {color, static_cast<std::uint32_t>(place)};
     }
@@ -169,8 +175,11 @@ static void write_phase(Phase phase, const WorldState<D>& state, const StepScrat
     case Phase::kStore:
       return write_contacts(scratch, writer);
     case Phase::kColors:
-      write_coloring("joint", scratch.joint_coloring, writer);
-      return write_coloring("contact", scratch.contact_coloring, writer);
+      write_coloring(
+          "joint", scratch.joint_coloring, [](std::size_t joint) { return joint; }, writer);
+      return write_coloring(
+          "contact", scratch.contact_coloring,
+          [&](std::size_t place) { return std::size_t{scratch.live[place].contact}; }, writer);
     default:
       return write_work(scratch, read, writer);
   }

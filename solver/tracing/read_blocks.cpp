@@ -14,20 +14,34 @@ static Vec<N> lane_of(const Vec<N, Lanes<W>>& lanes, int lane) {
 }
 
 template <int D, int W>
-static PointWork<D> point_of(const typename ContactBlock<D, W>::Point& point, int lane) {
+static PointWork<D> point_of(const typename ContactBlock<D, W>::Point& point, const Vec<D>& between,
+                             int lane) {
   PointWork<D> work;
   work.r_a = lane_of(point.r_a, lane);
-  work.r_b = lane_of(point.r_b, lane);
+  work.r_b = work.r_a - between;
   work.separation = lane_of(point.separation, lane);
   work.normal_mass = lane_of(point.normal_mass, lane);
   work.normal_impulse = lane_of(point.normal_impulse, lane);
-  work.bounce_impulse = lane_of(point.bounce_impulse, lane);
-  work.position_impulse = lane_of(point.position_impulse, lane);
   for (int t = 0; t < Dim<D>::kTangents; ++t) {
     work.tangent_mass[t] = lane_of(point.tangent_mass[t], lane);
     work.tangent_impulse[t] = lane_of(point.tangent_impulse[t], lane);
   }
   return work;
+}
+
+/// What only some contacts have; elsewhere it is 0.
+template <int D, int W>
+static void add_extra(const ContactExtra<D, W>& extra, int lane, std::uint32_t points,
+                      ContactWork<D>& work) {
+  work.restitution = lane_of(extra.restitution, lane);
+  work.rolling = lane_of(extra.rolling, lane);
+  work.twist = lane_of(extra.twist, lane);
+  work.pull = lane_of(extra.pull, lane);
+  work.rolling_impulse = lane_of(extra.rolling_impulse, lane);
+  for (std::uint32_t p = 0; p < points; ++p) {
+    work.points[p].bounce_impulse = lane_of(extra.bounce_impulse[p], lane);
+    work.points[p].position_impulse = lane_of(extra.position_impulse[p], lane);
+  }
 }
 
 /// @param points  How many the contact has; other lanes of the block may have more.
@@ -38,17 +52,12 @@ static ContactWork<D> contact_of(const ContactBlock<D, W>& block, int lane, std:
   work.body_b = block.body_b[lane];
   work.normal = lane_of(block.normal, lane);
   for (std::size_t t = 0; t < work.tangent.size(); ++t)
-    work.tangent[t] = lane_of(block.tangent[t], lane);
+    work.tangent[t] = lane_of(tangent_of(block, static_cast<int>(t)), lane);
   work.friction = lane_of(block.friction, lane);
-  work.restitution = lane_of(block.restitution, lane);
-  work.rolling = lane_of(block.rolling, lane);
-  work.twist = lane_of(block.twist, lane);
-  work.pull = lane_of(block.pull, lane);
-  work.bias_rate = lane_of(block.bias_rate, lane);
-  work.mass_scale = lane_of(block.mass_scale, lane);
-  work.impulse_scale = lane_of(block.impulse_scale, lane);
-  work.rolling_impulse = lane_of(block.rolling_impulse, lane);
-  for (std::uint32_t p = 0; p < points; ++p) work.points[p] = point_of<D, W>(block.points[p], lane);
+  const Vec<D> between = lane_of(block.between, lane);
+  for (std::uint32_t p = 0; p < points; ++p)
+    work.points[p] = point_of<D, W>(block.points[p], between, lane);
+  if (block.extra != nullptr) add_extra(*block.extra, lane, points, work);
   return work;
 }
 
@@ -73,10 +82,12 @@ template struct InstantiateRead<2, 4>;
 template struct InstantiateRead<2, 8>;
 template struct InstantiateRead<2, 16>;
 template struct InstantiateRead<2, kAvx2Lanes>;
+template struct InstantiateRead<2, kAvx512Lanes>;
 template struct InstantiateRead<3, 1>;
 template struct InstantiateRead<3, 4>;
 template struct InstantiateRead<3, 8>;
 template struct InstantiateRead<3, 16>;
 template struct InstantiateRead<3, kAvx2Lanes>;
+template struct InstantiateRead<3, kAvx512Lanes>;
 
 }  // namespace cycloid::solver

@@ -123,9 +123,6 @@ struct ContactWork {
   float rolling;
   float twist;
   float pull;
-  float bias_rate;
-  float mass_scale;
-  float impulse_scale;
   std::array<PointWork<D>, Dim<D>::kManifoldPoints> points;
   Spin<D> rolling_impulse;
 };
@@ -140,9 +137,6 @@ constexpr void visit_fields(R& r, F&& f, const ContactWork<D>*) {
   f("rolling", r.rolling);
   f("twist", r.twist);
   f("pull", r.pull);
-  f("bias_rate", r.bias_rate);
-  f("mass_scale", r.mass_scale);
-  f("impulse_scale", r.impulse_scale);
   f("points", r.points);
   f("rolling_impulse", r.rolling_impulse);
 }

@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <random>
+#include <set>
 
 #include "solver/collision/bounds_tree.hpp"
 #include "solver/collision/collide.hpp"
@@ -30,6 +31,30 @@ TEST(Collide, FlatBoxesMeetInTwoPointsWithTheNormalFromAToB) {
   for (int i = 0; i < 2; ++i) EXPECT_NEAR(manifold.points[i].separation, -0.01f, 1.0e-6f);
   const float width = std::abs(manifold.points[0].anchor_a[0] - manifold.points[1].anchor_a[0]);
   EXPECT_NEAR(width, 0.75f, 1.0e-6f);
+}
+
+// A box that rocks on another one by a thousandth turns the reference edge over to the other shape
+// and back. Its points are the same ones, in the same order, or they would lose their impulses.
+TEST(Collide, PointsKeepTheirFeaturesWhenTheReferenceEdgeIsTheOthers) {
+  const Shape<2> a = record(box(0.5f, 0.5f));
+  const auto rocking = [&](float angle, float x) {
+    return collide(a, pose<2>({{0.0f, 0.0f}}), a, {{{x, 0.98f}}, turned(angle)}, 0.02f, {});
+  };
+  for (const float x : {-0.3f, 0.0f, 0.3f}) {
+    std::set<float> normals;
+    const Manifold<2> flat = rocking(0.0f, x);
+    ASSERT_EQ(flat.point_count, 2u);
+    for (const float angle : {-2.0e-3f, -1.0e-3f, 1.0e-3f, 2.0e-3f}) {
+      const Manifold<2> manifold = rocking(angle, x);
+      ASSERT_EQ(manifold.point_count, 2u);
+      normals.insert(manifold.normal[0]);
+      for (std::size_t i = 0; i < 2; ++i) {
+        EXPECT_EQ(manifold.points[i].feature, flat.points[i].feature) << x << ' ' << angle;
+        EXPECT_NEAR(manifold.points[i].anchor_a[0], flat.points[i].anchor_a[0], 0.01f);
+      }
+    }
+    EXPECT_TRUE(x == 0.0f || (normals.contains(0.0f) && normals.size() > 1)) << "not turned over";
+  }
 }
 
 TEST(Collide, SwappingTheShapesMirrorsTheManifold) {

@@ -121,9 +121,9 @@ std::size_t canonical_numbers(const std::vector<std::uint32_t>& numbers,
                               const std::array<std::uint32_t, kPeriod>& floats) {
   for (std::size_t at = 0; at < numbers.size(); at += kPeriod) {
     const std::size_t count = std::min(kPeriod, numbers.size() - at);
-    const std::vector<std::uint32_t> before(numbers.begin() + static_cast<std::ptrdiff_t>(at),
-                                            numbers.begin() +
-                                                static_cast<std::ptrdiff_t>(at + count));
+    const std::vector<std::uint32_t> before(
+        numbers.begin() + static_cast<std::ptrdiff_t>(at),
+        numbers.begin() + static_cast<std::ptrdiff_t>(at + count));
     std::vector<std::uint32_t> made = before;
     make_canonical(std::as_writable_bytes(std::span(made)).data(), count, floats.data());
     if (made != before) return at;

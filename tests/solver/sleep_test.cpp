@@ -187,4 +187,25 @@ TEST(Sleep, ARestoredSleeperWakesToTheSameBits) {
   }
 }
 
+// Boxes that overlap under a load rock on one another by less than a thousandth; whatever that
+// turns over must not cost their contacts what they know of the load.
+TEST(Rest, APyramidThatIsNotLetSleepStandsStill) {
+  WorldDef<2> def = with_gravity<2>({0.6f, 0.0f, 0.0f});
+  def.tuning = Tuning::soft_step();
+  def.tuning.sleep_s = 0.0f;
+  World<2> world = make_world(def);
+  add_ground<2>(world, up<2>());
+  constexpr int kBase = 30;
+  for (int row = 0; row < kBase; ++row)
+    for (int i = 0; i < kBase - row; ++i)
+      add_at<2>(world,
+                {{static_cast<float>(i) + 0.5f * static_cast<float>(row),
+                  0.5f + static_cast<float>(row)}},
+                box(0.5f, 0.5f));
+  step(world, 600);
+  float fastest = 0.0f;
+  for (const Body<2>& body : world.state().bodies) fastest = max(fastest, length(body.velocity));
+  EXPECT_LT(fastest, 1.0e-3f);
+}
+
 }  // namespace cycloid::solver

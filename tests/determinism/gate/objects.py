@@ -34,12 +34,33 @@ X87_EXACT = (re.compile(r"json_(reader|writer)\.cpp\.o"), re.compile(r"fadds +\S
 POWERPC_TABLE = re.compile(r"\.long 0xffff[0-9a-f]{4}|fn?m(add|sub)s? f31,f31,f\d+,f31")
 
 
-# Units compiled for processors that have AVX2, and what every name that they define holds: the width
-# of their lanes (kAvx2Lanes). Of two copies of an inline function the linker keeps one for everybody.
-AVX2_UNIT = re.compile(r".*_avx2(\.cpp)?\.o(bj)?")
-AVX2_NAME = re.compile(r".*(\b264\b|Li264E).*")  # As nm demangles it, or as it could not.
-# Where solver/CMakeLists.txt compiles them so. Everywhere else the unit is there, and never called.
-AVX2_FORMAT = "elf64-x86-64"
+# Where solver/CMakeLists.txt compiles units for some processors alone. Everywhere else such a unit is
+# there, and never called.
+WIDE_FORMAT = "elf64-x86-64"
+
+
+@dataclass(frozen=True)
+class WideUnits:
+    """Units compiled for processors that have a set of instructions, and what every name that they
+    define holds: the width of their lanes (solver/lanes.hpp). Of two copies of an inline function the
+    linker keeps one for everybody."""
+
+    instructions: str
+    width: int
+    register: str
+
+    def have(self, member: str) -> bool:
+        return re.fullmatch(rf".*_{self.instructions.lower()}(\.cpp)?\.o(bj)?", member) is not None
+
+    def own(self, name: str) -> bool:  # As nm demangles it, or as it could not.
+        return re.search(rf"\b{self.width}\b|Li{self.width}E", name) is not None
+
+
+WIDE_UNITS = (WideUnits("AVX2", 264, "%ymm"), WideUnits("AVX512", 528, "%zmm"))
+
+
+def units_of(member: str) -> WideUnits | None:
+    return next((units for units in WIDE_UNITS if units.have(member)), None)
 
 
 class CannotJudge(Exception):
@@ -127,8 +148,8 @@ def is_exact_x87(one: Instruction, reason: str) -> bool:
 
 
 def forbidden_instructions(disassembly: str) -> tuple[list[str], int]:
-    """One line for each forbidden instruction, and each unit for AVX2 that was compiled without it;
-    and how many instructions were read."""
+    """One line for each forbidden instruction, and each wide unit that was compiled without those that
+    it is for; and how many instructions were read."""
     findings: list[str] = []
     count = 0
     is_wide: dict[str, bool] = {}
@@ -140,10 +161,11 @@ def forbidden_instructions(disassembly: str) -> tuple[list[str], int]:
             known[key] = why_forbidden(one.processor, one.text)
         if known[key] and not is_exact_x87(one, known[key]):
             findings.append(f"{one.member}: {one.function}: {one.text}\n  {known[key]}")
-        if AVX2_UNIT.fullmatch(one.member) and one.file_format == AVX2_FORMAT:
-            is_wide[one.member] = is_wide.get(one.member, False) or "%ymm" in one.text
-    findings += [f"{member}: holds no instruction of 256 bits\n  compile it with -mavx2, or nothing "
-                 "of it is worth choosing" for member, wide in is_wide.items() if not wide]
+        units = units_of(one.member)
+        if units is not None and one.file_format == WIDE_FORMAT:
+            is_wide[one.member] = is_wide.get(one.member, False) or units.register in one.text
+    findings += [f"{member}: holds no instruction of its own\n  compile it for its processors, or "
+                 "nothing of it is worth choosing" for member, wide in is_wide.items() if not wide]
     return findings, count
 
 
@@ -183,24 +205,25 @@ def foreign_imports(listings: Iterable[tuple[str, str]], imports: Imports) -> li
 
 
 def shared_names(listings: Iterable[tuple[str, str]]) -> list[str]:
-    """One line for each name of a unit for AVX2 that another unit could use by accident."""
+    """One line for each name of a wide unit that another unit could use by accident."""
     definitions = [
-        (member, name)
+        (member, name, units_of(member))
         for file, listing in listings
         for member, name, is_defined in names_by_member(listing, file)
         if is_defined
     ]
-    of_avx2 = {name for member, name in definitions if AVX2_UNIT.fullmatch(member)}
-    reason = "it would run on processors without AVX2; inline it always, or give it the width 264"
+    of_wide = {name: units for _, name, units in definitions if units is not None}
     findings = [
-        f"{member}: defines {name}\n  {reason}"
-        for member, name in definitions
-        if AVX2_UNIT.fullmatch(member) and not AVX2_NAME.fullmatch(name)
+        f"{member}: defines {name}\n  it would run on processors without {units.instructions}; inline it "
+        f"always, or give it the width {units.width}"
+        for member, name, units in definitions
+        if units is not None and not units.own(name)
     ]
     findings += [
-        f"{member}: defines {name}\n  so does a unit for AVX2, which passes lanes in other registers"
-        for member, name in definitions
-        if not AVX2_UNIT.fullmatch(member) and name in of_avx2
+        f"{member}: defines {name}\n  so does a unit for {of_wide[name].instructions}, which passes "
+        "lanes in other registers"
+        for member, name, units in definitions
+        if units is None and name in of_wide
     ]
     return findings
 

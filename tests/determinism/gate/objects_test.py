@@ -99,28 +99,38 @@ class Objects(Planted):
         text = 'float f(float a) { asm("rsqrtss %0, %0" : "+x"(a)); return a; }'
         self.expect(self.compile(text), 1, "planted.o: f(float): rsqrtss", "estimate")
 
-    @unittest.skipUnless(X86, "only x86 has units for AVX2")
-    def test_names_of_units_for_avx2_hold_their_width_and_are_theirs_alone(self) -> None:
-        kernel = """template <int W> struct K {
-          static int f(int a) { asm("vaddps %ymm0, %ymm0, %ymm0"); return a; }
-        };
-        """
-        wide = kernel + "template struct K<264>;\n"
-        shared = "inline int g(int a) { return a; }\nauto* used = &g;\n"
-        own = self.compile(wide, name="kernels_avx2")
-        self.expect(own, 0)
-        self.expect(self.compile(wide + shared, name="more_avx2"), 1, "more_avx2.o: defines g(int)")
-        other = self.compile(wide)
-        status, text = self.gate(own, other)
-        self.assertEqual(status, 1, text)
-        self.assertIn("planted.o: defines K<264>::f(int)", text)
-        narrow = self.compile(kernel + "template struct K<8>;\n" + shared)
-        self.assertEqual(self.gate(own, narrow)[0], 0)
+    @unittest.skipUnless(X86, "only x86 has wide units")
+    def test_names_of_wide_units_hold_their_width_and_are_theirs_alone(self) -> None:
+        for suffix, width, register in (("avx2", 264, "ymm"), ("avx512", 528, "zmm")):
+            kernel = f"""template <int W> struct K {{
+              static int f(int a) {{ asm("vaddps %{register}0, %{register}0, %{register}0"); return a; }}
+            }};
+            """
+            wide = kernel + f"template struct K<{width}>;\n"
+            shared = "inline int g(int a) { return a; }\nauto* used = &g;\n"
+            own = self.compile(wide, name=f"kernels_{suffix}")
+            self.expect(own, 0)
+            more = self.compile(wide + shared, name=f"more_{suffix}")
+            self.expect(more, 1, f"more_{suffix}.o: defines g(int)")
+            other = self.compile(wide)
+            status, text = self.gate(own, other)
+            self.assertEqual(status, 1, text)
+            self.assertIn(f"planted.o: defines K<{width}>::f(int)", text)
+            narrow = self.compile(kernel + "template struct K<8>;\n" + shared)
+            self.assertEqual(self.gate(own, narrow)[0], 0)
 
-    @unittest.skipUnless(X86, "only x86 has units for AVX2")
-    def test_a_unit_for_avx2_without_an_instruction_of_it_is_found(self) -> None:
-        text = "template <int W> struct K { static int f(int a) { return a; } };\ntemplate struct K<264>;"
-        self.expect(self.compile(text, name="kernels_avx2"), 1, "kernels_avx2.o: holds no instruction")
+    @unittest.skipUnless(X86, "only x86 has wide units")
+    def test_a_wide_unit_without_an_instruction_of_its_own_is_found(self) -> None:
+        for suffix, width in (("avx2", 264), ("avx512", 528)):
+            text = (f"template <int W> struct K {{ static int f(int a) {{ return a; }} }};\n"
+                    f"template struct K<{width}>;")
+            self.expect(self.compile(text, name=f"kernels_{suffix}"), 1,
+                        f"kernels_{suffix}.o: holds no instruction")
+
+    @unittest.skipUnless(X86, "only x86 has AVX-512")
+    def test_the_fused_operations_of_avx512_are_found(self) -> None:
+        text = 'void f() { asm("vfmaddsub132ps %zmm0, %zmm0, %zmm0"); }'
+        self.expect(self.compile(text, name="planted"), 1, "fused multiply-add")
 
     def test_a_unit_for_avx2_is_an_ordinary_one_where_it_is_not_compiled_for_avx2(self) -> None:
         for file_format, findings in (("elf64-x86-64", 1), ("pe-x86-64", 0), ("elf64-littleaarch64", 0)):
