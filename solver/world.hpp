@@ -204,6 +204,8 @@ class World {
  private:
   World();
   static Result<World> create(const WorldDef<D>& def, bool caller_rounds_as_written);
+  Error step_in_lanes();
+  Error step_in_one_lane();
   Error check(BodyId id) const;
   Error check(JointId id) const;
 
