@@ -173,6 +173,7 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::vector<Acceleration<D>> accelerations;  ///< Of awake_bodies.
   std::uint32_t substeps = 0;                  ///< Of this tick.
   std::uint32_t poses = 0;  ///< Grows whenever positions have moved in this tick.
+  bool slides_far = false;  ///< Some body moves by more than a metre in this tick.
 };
 
 }  // namespace cycloid::solver

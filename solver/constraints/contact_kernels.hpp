@@ -12,6 +12,7 @@ struct BlockRange {
   ContactBlock<D, W>* end;
   Motion<D>* motions;   ///< By body slot.
   std::uint32_t poses;  ///< StepScratch::poses.
+  bool slides_far;      ///< StepScratch::slides_far.
 };
 
 /// What a row may miss before more than sweeps is done about it, m/s.

@@ -13,8 +13,8 @@ namespace cycloid::solver {
 /// called here is a template on W or always inlined, so that those compiled for one instruction set
 /// have names of their own.
 
-/// Velocities of both bodies; also their poses, and from them slides and gaps, where positions have
-/// moved since.
+/// Velocities of both bodies; also their poses, and from them slides, gaps and the masses of what
+/// slid far, where positions have moved since.
 template <int D, int W>
 [[gnu::always_inline]] inline void gather_pair(const BlockRange<D, W>& range,
                                                ContactBlock<D, W>& block, MotionLanes<D, W>& a,
@@ -27,6 +27,7 @@ template <int D, int W>
   gather_quads<kPoseQuads<D>>(range.motions, block.body_a, a);
   gather_quads<kPoseQuads<D>>(range.motions, block.body_b, b);
   place(block, a, b);
+  if (range.slides_far) weigh_where_slid(block);
   block.placed = range.poses;
 }
 
@@ -53,7 +54,7 @@ void ContactKernels<D, W>::complete(const LoadBounds& bounds, const BlockRange<D
     share_points(*block);
     block->friction = sqrt(block->friction);
     set_tangents(*block);
-    set_effective_masses(Lanes<W>(1.0f), *block);
+    set_first_masses(Lanes<W>(1.0f), *block);
     if (bounds.asked) find_load(bounds, *block);
   }
 }
@@ -66,7 +67,7 @@ void ContactKernels<D, W>::follow(const BlockRange<D, W>& range) {
 
 template <int D, int W>
 void ContactKernels<D, W>::weigh(const float (&wanted)[kLaneCount<W>], ContactBlock<D, W>& block) {
-  set_effective_masses(Lanes<W>::load(wanted), block);
+  set_first_masses(Lanes<W>::load(wanted), block);
 }
 
 template <int D, int W>
@@ -81,9 +82,10 @@ void ContactKernels<D, W>::bounce(const StepContext<D>& context, const BlockRang
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
     block->bounced = false;
     if (!block->bounces) continue;
-    MotionLanes<D, W> a;
-    MotionLanes<D, W> b;
-    gather_pair(range, *block, a, b);
+    // Not by gather_pair: what only blocks that bounce have done must show in no row.
+    MotionLanes<D, W> a = gather<D, W>(range.motions, block->body_a);
+    MotionLanes<D, W> b = gather<D, W>(range.motions, block->body_b);
+    place(*block, a, b);
     block->bounced = bounce_points(context, *block, a, b);
     if (block->bounced) scatter_pair(range, *block, a, b);
   }

@@ -32,8 +32,8 @@ static Acceleration<D> acceleration_of(const StepContext<D>& context, const Body
 /// is not awake is at rest, and none that is awake can push it: to its neighbours it has no mass.
 ///
 /// Reads the velocity, rotation, mass, forces and damping of who is awake; writes motions, masses,
-/// and the accelerations of who is awake, each body its own, so any split into ranges gives the
-/// same bits.
+/// and the accelerations of who is awake, each body its own, and whether any moves by more than a
+/// metre in the tick, so any split into ranges gives the same bits.
 template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch) {
@@ -44,17 +44,24 @@ void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, W
   scratch.masses.assign(count + 1, BodyMass<D>{});
   scratch.inertia_turned.assign(count + 1, 0);
   scratch.accelerations.resize(scratch.awake_bodies.size());
+  constexpr float kFar = 1.0f;  // m in a tick.
+  const float far_speed = kFar / context.tick_s;
+  Tally far;
   workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
+    bool any_far = false;
     for (int i = range.begin; i < range.end; ++i) {
       const auto place = static_cast<std::size_t>(i);
       const std::uint32_t slot = scratch.awake_bodies[place];
       const Body<D>& body = state.bodies[slot];
+      any_far = any_far || dot(body.velocity, body.velocity) > far_speed * far_speed;
       scratch.motions[slot] = {body.velocity, body.spin, Vec<D>::zero(), identity_rotation<D>()};
       scratch.masses[slot] = {body.inverse_mass,
                               world_inertia(body.inverse_inertia, body.rotation)};
       scratch.accelerations[place] = acceleration_of(context, body, scratch.masses[slot]);
     }
+    if (any_far) far.add(1);
   });
+  scratch.slides_far = far.sum() > 0;
 }
 
 template <int D>

@@ -133,7 +133,8 @@ void for_each_by_color(const Colors& colors, Workers& workers, int grain, Run&& 
 template <int D, int W>
 BlockRange<D, W> block_range(StepScratch<D>& scratch, Range range) {
   ContactBlock<D, W>* blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks.data();
-  return {blocks + range.begin, blocks + range.end, scratch.motions.data(), scratch.poses};
+  return {blocks + range.begin, blocks + range.end, scratch.motions.data(), scratch.poses,
+          scratch.slides_far};
 }
 
 }  // namespace cycloid::solver

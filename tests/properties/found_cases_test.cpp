@@ -1,0 +1,89 @@
+#include <gtest/gtest.h>
+
+#include <string>
+
+#include "tests/properties/play.hpp"
+
+namespace cycloid::properties {
+namespace {
+
+/// A case that long searches have found to part, and what was wrong.
+struct FoundCase {
+  const char* name;
+  bool faults;  ///< Whether it ends in a fault, in both settings the same.
+  Case example;
+};
+
+class FoundCases : public testing::TestWithParam<FoundCase> {};
+
+TEST_P(FoundCases, AreTheSame) {
+  const Played played = play(GetParam().example);
+  EXPECT_EQ(played.failure, "");
+  EXPECT_EQ(played.faulted, GetParam().faults ? 1u : 0u);
+}
+
+const FoundCase kFound[] = {
+    // Friction under XPBD took arms that only a bouncing neighbour in the block had placed.
+    {"XpbdBesideWhatBounces", false,
+     Case{3,
+          0,
+          0,
+          0,
+          {8, 1},
+          {8, 16},
+          {{Op::kCreateBody, 0, 2, {}},
+           {Op::kTuning, 29, 0, {}},
+           {Op::kCreateGrid, 0, 0, {0, 0, 0, -69}},
+           {Op::kStep, 5, 0, {}}}}},
+    // A material lost its friction; whose block had no friction left kept the impulses of before.
+    {"FrictionThatIsTakenAway", false,
+     Case{2,
+          0,
+          1,
+          0,
+          {2, 1},
+          {8, 8},
+          {{Op::kCreateBody, 0, 0, {}},
+           {Op::kGravity, 0, 0, {1, -31}},
+           {Op::kCreateBody, 0, 0, {0, 64}},
+           {Op::kStep, 0, 0, {}},
+           {Op::kMaterial, 0, 0, {}},
+           {Op::kCreateBody, 0, 0, {0, 44, 0, 0, 0, 81, 69}},
+           {Op::kStep, 2, 0, {}}}}},
+    // Rows whose arms had grown by 30 m in a tick threw bodies of 2 km/s out of what float holds.
+    {"AFastBodyInAPile", false,
+     Case{2,
+          0,
+          0,
+          0,
+          {8, 8},
+          {3, 1},
+          {{Op::kMaterial, 0, 0, {8}},
+           {Op::kCreateGrid, 39, 9, {}},
+           {Op::kSetVelocity, 35, 31, {-2, 36, 0, -4}},
+           {Op::kStep, 1, 0, {}}}}},
+    // Sums that left what float can hold: in lanes beside one another they came to other values,
+    // and the fault was named after another body or field.
+    {"AFaultInSpace", true,
+     Case{3,
+          675,
+          1,
+          0,
+          {2, 16},
+          {1, 1},
+          {{Op::kCreateBody, 0, 0, {0, 0, 0, 0, 0, 0, 0, 1}},
+           {Op::kCreateBody, 0, 0, {}},
+           {Op::kCreateBody, 0, 0, {}},
+           {Op::kCreateBody, 0, 0, {}},
+           {Op::kCreateBody, 0, 7, {35, 86, 89, -100, 63, 71, -81, -88}},
+           {Op::kSetPose, 1, 0, {0, 0, 33}},
+           {Op::kStep, 6, 0, {}},
+           {Op::kCreateJoint, 23, 0, {-48, -50, 89, 0, 0, -86}},
+           {Op::kStep, 1, 0, {}}}}},
+};
+
+INSTANTIATE_TEST_SUITE_P(Found, FoundCases, testing::ValuesIn(kFound),
+                         [](const auto& found) { return std::string(found.param.name); });
+
+}  // namespace
+}  // namespace cycloid::properties
