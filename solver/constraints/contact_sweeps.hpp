@@ -31,6 +31,18 @@ template <int D, int W>
   block.placed = range.poses;
 }
 
+/// gather_pair for what only blocks do that bounce: where it would weigh lanes anew, which must not
+/// show whether one of their neighbours bounces, it is left to the sweep that comes next.
+template <int D, int W>
+[[gnu::always_inline]] inline void gather_to_bounce(const BlockRange<D, W>& range,
+                                                    ContactBlock<D, W>& block, MotionLanes<D, W>& a,
+                                                    MotionLanes<D, W>& b) {
+  if (!range.slides_far) return gather_pair(range, block, a, b);
+  a = gather<D, W>(range.motions, block.body_a);
+  b = gather<D, W>(range.motions, block.body_b);
+  place(block, a, b);
+}
+
 template <int D, int W>
 [[gnu::always_inline]] inline void scatter_pair(const BlockRange<D, W>& range,
                                                 const ContactBlock<D, W>& block,
@@ -82,10 +94,9 @@ void ContactKernels<D, W>::bounce(const StepContext<D>& context, const BlockRang
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
     block->bounced = false;
     if (!block->bounces) continue;
-    // Not by gather_pair: what only blocks that bounce have done must show in no row.
-    MotionLanes<D, W> a = gather<D, W>(range.motions, block->body_a);
-    MotionLanes<D, W> b = gather<D, W>(range.motions, block->body_b);
-    place(*block, a, b);
+    MotionLanes<D, W> a;
+    MotionLanes<D, W> b;
+    gather_to_bounce(range, *block, a, b);
     block->bounced = bounce_points(context, *block, a, b);
     if (block->bounced) scatter_pair(range, *block, a, b);
   }
