@@ -215,8 +215,8 @@ static float deepest_overrun(std::uint32_t continuous) {
 
 // Stopped at those beside or before them, boxes of a crowd lose their way and are overrun.
 TEST(Continuous, ACrowdIsNotOverrunByWhatDrivesIt) {
-  EXPECT_LT(deepest_overrun(0), 0.4f);
-  EXPECT_LT(deepest_overrun(1), 0.4f);
+  EXPECT_LT(deepest_overrun(0), 0.1f);
+  EXPECT_LT(deepest_overrun(1), 0.1f);
 }
 
 // What pushes does not excuse from stopping at what does not yield.
