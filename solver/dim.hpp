@@ -49,10 +49,11 @@ struct Vec {
 template <int D>
 struct Dim {
   static_assert(D == 2 || D == 3);
-  static constexpr int kSpin = D * (D - 1) / 2;     ///< Rotational freedoms: 1 or 3.
-  static constexpr int kFreedoms = D + kSpin;       ///< Of a body: 3 or 6.
-  static constexpr int kTangents = D - 1;           ///< Friction directions per contact point.
-  static constexpr int kRotation = D == 2 ? 2 : 4;  ///< (cos, sin) or quaternion (x, y, z, w).
+  static constexpr int kSpin = D * (D - 1) / 2;          ///< Rotational freedoms: 1 or 3.
+  static constexpr int kFreedoms = D + kSpin;            ///< Of a body: 3 or 6.
+  static constexpr int kPinEqualities = D == 2 ? 2 : 5;  ///< Most of a pin: in space a hinge's.
+  static constexpr int kTangents = D - 1;                ///< Friction directions per contact point.
+  static constexpr int kRotation = D == 2 ? 2 : 4;       ///< (cos, sin) or quaternion (x, y, z, w).
   static constexpr int kManifoldPoints = D == 2 ? 2 : 4;
   static constexpr int kVertices = D == 2 ? 8 : 64;     ///< Most vertices of one convex shape.
   static constexpr int kMortonBits = D == 2 ? 16 : 10;  ///< Per axis; all axes fit 32 bits.

@@ -1,7 +1,7 @@
 #include "solver/constraints/contact_rolling.hpp"
 #include "solver/events.hpp"
 #include "solver/floating_point_mode.hpp"
-#include "solver/instruction_sets.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/step_memory.hpp"
 #include "solver/tracing/tracer.hpp"
@@ -15,7 +15,7 @@ template <int D, int W>
 static void evaluate(const StepContext<D>& context, const WorldState<D>& state, float time_s,
                      Workers& workers, StepScratch<D>& scratch) {
   evaluate_contacts<D, W>(workers, scratch);
-  evaluate_joints(state, time_s, workers, scratch);
+  evaluate_joints(context, state, time_s, workers, scratch);
   factor_trees(context, scratch);
 }
 
@@ -82,34 +82,24 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
 }
 
 /// From the blocks of contacts on, in lanes of width W.
+/// @param lanes  The width that is asked for, of joints too; 0 leaves it to what they are.
 template <int D, int W>
-static void solve_contacts(const StepContext<D>& context, const WorldState<D>& state,
+static void solve_contacts(int lanes, const StepContext<D>& context, const WorldState<D>& state,
                            Workers& workers, StepScratch<D>& scratch) {
   const Tracer<D> traced{state, scratch, &read_blocks<D, W>};
   prepare_contacts<D, W>(context, state, workers, scratch);
   prepare_islands<D, W>(context, scratch);
   const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
   scratch.substeps = paced.tuning.substeps;
+  prepare_pins(lanes, paced, state, scratch);
   traced(Phase::kPrepare);
   solve_substeps<D, W>(paced, state, traced, workers, scratch);
   if (paced.h != context.h) rescale_impulses<D, W>(context.h / paced.h, scratch);
   store_impulses<D, W>(workers, scratch);
+  store_pins(scratch);
   traced(Phase::kStore);
   stop_fast_bodies(context, state, workers, scratch);
   traced(Phase::kStop);
-}
-
-/// A width in the instruction set that this processor has for it.
-static int in_best_set(int lanes) {
-  if (lanes == 8 && has_avx2_kernels()) return kAvx2Lanes;
-  if (lanes == 16 && has_avx512_kernels()) return kAvx512Lanes;
-  return lanes;
-}
-
-/// The width for what fills as many lanes as it likes; 0 stands for the widest of one instruction.
-static int widest_lanes(int lanes) {
-  if (lanes != 0) return in_best_set(lanes);
-  return has_avx512_kernels() ? kAvx512Lanes : has_avx2_kernels() ? kAvx2Lanes : 4;
 }
 
 /// How many blocks of `width` contacts the colouring fills.
@@ -120,33 +110,23 @@ static int blocks_of(const Coloring& coloring, int width) {
   return blocks;
 }
 
-/// The width that solves these contacts soonest, for it changes no bit: the wider one where it is
-/// there and saves blocks, of 16 lanes a third of them, for such a block takes longer. One lane
-/// never does: even a single contact costs less in a block of four, whose gathering is made of
-/// whole loads.
-static int width_for(const Coloring& coloring) {
-  if (!has_avx2_kernels()) return 4;
-  const int of_eight = blocks_of(coloring, 8);
-  if (has_avx512_kernels() && 3 * blocks_of(coloring, 16) < 2 * of_eight) return kAvx512Lanes;
-  return of_eight < blocks_of(coloring, 4) ? kAvx2Lanes : 4;
-}
-
 template <int D>
 static void solve_in_lanes(int lanes, const StepContext<D>& context, const WorldState<D>& state,
                            Workers& workers, StepScratch<D>& scratch) {
-  switch (lanes == 0 ? width_for(scratch.contact_coloring) : in_best_set(lanes)) {
+  const auto blocks = [&](int width) { return blocks_of(scratch.contact_coloring, width); };
+  switch (lanes == 0 ? width_that_saves(blocks) : in_best_set(lanes)) {
     case 1:
-      return solve_contacts<D, 1>(context, state, workers, scratch);
+      return solve_contacts<D, 1>(lanes, context, state, workers, scratch);
     case 8:
-      return solve_contacts<D, 8>(context, state, workers, scratch);
+      return solve_contacts<D, 8>(lanes, context, state, workers, scratch);
     case 16:
-      return solve_contacts<D, 16>(context, state, workers, scratch);
+      return solve_contacts<D, 16>(lanes, context, state, workers, scratch);
     case kAvx2Lanes:
-      return solve_contacts<D, kAvx2Lanes>(context, state, workers, scratch);
+      return solve_contacts<D, kAvx2Lanes>(lanes, context, state, workers, scratch);
     case kAvx512Lanes:
-      return solve_contacts<D, kAvx512Lanes>(context, state, workers, scratch);
+      return solve_contacts<D, kAvx512Lanes>(lanes, context, state, workers, scratch);
     default:
-      return solve_contacts<D, 4>(context, state, workers, scratch);
+      return solve_contacts<D, 4>(lanes, context, state, workers, scratch);
   }
 }
 

@@ -11,6 +11,7 @@
 #include "solver/collision/pair_cache.hpp"
 #include "solver/constraints/contact.hpp"
 #include "solver/constraints/joint_row.hpp"
+#include "solver/constraints/pin_block.hpp"
 #include "solver/direct/island_solver.hpp"
 #include "solver/direct/tree_solver.hpp"
 #include "solver/motion.hpp"
@@ -151,6 +152,8 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   Coloring joint_coloring;               ///< `order` holds joint slots.
   Coloring contact_coloring;             ///< `order` holds places of live contacts.
   std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.
+  Pins<D> pins;                          ///< Joints that are solved in lanes.
+  Coloring single_rows;                  ///< `order` holds the places of all other joint rows.
   std::vector<Motion<D>> saved_motions;  ///< Of pseudo-velocity sweeps and of XPBD's substep.
   std::vector<JointRow<D>> saved_rows;
   std::vector<JointBlock<D>> tree_blocks;  ///< Of joint_rows, for the tree solver.

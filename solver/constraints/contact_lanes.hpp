@@ -1,27 +1,11 @@
 #pragma once
 
 #include "solver/constraints/contact.hpp"
+#include "solver/constraints/single_lanes.hpp"
 
 namespace cycloid::solver {
 
-/// Writing single lanes of a contact block, and what follows from them for all lanes at once.
-
-template <int W>
-void set_lane(Lanes<W>& lanes, int lane, float value) {
-  // One float in memory: to load and store the whole vector would cost a fifth of a step in space.
-  lanes.raw[lane] = value;
-}
-template <int N, int W>
-void set_lane(Vec<N, Lanes<W>>& lanes, int lane, const Vec<N>& value) {
-  for (int i = 0; i < N; ++i) set_lane(lanes[i], lane, value[i]);
-}
-
-template <int D, int W>
-void set_mass(LaneMass<D, W>& lanes, int lane, const BodyMass<D>& mass) {
-  set_lane(lanes.inverse_mass, lane, mass.inverse_mass);
-  for (int i = 0; i < Dim<D>::kSpin * Dim<D>::kSpin; ++i)
-    set_lane(lanes.inverse_inertia[i], lane, mass.inverse_inertia.m[i]);
-}
+/// What follows from the single lanes of a contact block for all lanes at once.
 
 /// (J M^-1 J^T)^-1 of a row along `direction`; 0 where nothing moves.
 template <int D, int W>

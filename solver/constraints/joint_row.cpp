@@ -53,18 +53,15 @@ static bool cone_is_near(float room, const JointRow<3>& row, const Motion<3>& a,
   return row.cone_impulse > 0.0f || row.cone - row.rows.cone_axis.error < room + way;
 }
 
-/// Whether a limit pushes already or could be reached soon: at the present speed in four substeps,
-/// and a tenth of a metre or radian besides for what the sweeps may do to it. What is farther away
-/// would be solved to an impulse of 0, and its held rows are a good part of a joint's cost.
+/// Whether a limit pushes already or could be reached soon (joint_bounds.hpp).
 template <int D>
 static bool limit_is_near(const JointRow<D>& row, const Motion<D>& a, const Motion<D>& b) {
-  constexpr float kRoom = 0.1f;
   if (!row.limit_enabled) return false;
   if (row.lower_impulse > 0.0f || row.upper_impulse > 0.0f) return true;
   const float coordinate = row.rows.axis.error;
-  const float reach = kRoom + row.limit_reach_s * abs(row_speed(row.rows.axis, a, b));
+  const float reach = kLimitRoom + row.limit_reach_s * abs(row_speed(row.rows.axis, a, b));
   return coordinate - row.lower < reach || row.upper - coordinate < reach ||
-         cone_is_near(kRoom, row, a, b);
+         cone_is_near(kLimitRoom, row, a, b);
 }
 
 template <int D>

@@ -3,6 +3,7 @@
 #include <span>
 
 #include "solver/constraints/block.hpp"
+#include "solver/constraints/joint_bounds.hpp"
 #include "solver/constraints/rows.hpp"
 #include "solver/motion.hpp"
 #include "solver/step_context.hpp"
@@ -40,11 +41,6 @@ struct JointRow : ConeLimit<D> {
   BodyMass<D> mass_b;
   Vec<D> centre_offset;  ///< Centre of b from centre of a, at the start of the tick, m.
 
-  JointRows<D> rows;
-  BlockFactor<kRows> blocks[2];  ///< Of the equalities before `rows.split`, and from it on.
-  HeldRow<D> axis;               ///< Of the coordinate.
-  HeldRow<D> motor;
-
   Softness spring_of[2];  ///< Of the blocks; meant where is_spring.
   bool is_spring[2];
   float impulse_max[2];  ///< N s and N m s; length of a block's impulse.
@@ -71,6 +67,12 @@ struct JointRow : ConeLimit<D> {
   float motor_impulse;
   float lower_impulse;
   float upper_impulse;
+
+  // What evaluate_rows writes, far from what every stage asks; before that it is of another tick.
+  JointRows<D> rows;
+  BlockFactor<kRows> blocks[2];  ///< Of the equalities before `rows.split`, and from it on.
+  HeldRow<D> axis;               ///< Of the coordinate.
+  HeldRow<D> motor;
 };
 
 /// Whether its equalities do not yield, so that an island can hold them.

@@ -25,11 +25,15 @@ struct Row {
 
 /// One more row that joints of space may have, whose error has an upper limit: the swing of a cone.
 template <int D>
-struct ConeRow {};
+struct ConeRow {
+  void drop_cone() {}
+};
 template <>
 struct ConeRow<3> {
   bool has_cone_axis = false;
   Row<3> cone_axis;
+
+  void drop_cone() { has_cone_axis = false; }
 };
 
 /// What a joint asks for at the present poses.
@@ -47,6 +51,13 @@ struct JointRows : ConeRow<D> {
   bool has_motor_axis = false;
   Row<D> axis;
   Row<D> motor_axis;
+
+  /// Has no rows from now on; what stood in them is left.
+  void drop() {
+    this->drop_cone();
+    count = split = 0;
+    has_axis = has_motor_axis = false;
+  }
 
   /// As JointRows{}, but `rows` keeps what nobody reads: whoever appends a row assigns the whole of
   /// it.

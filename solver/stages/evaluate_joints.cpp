@@ -1,3 +1,4 @@
+#include "solver/constraints/single_lanes.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trig.hpp"
 
@@ -18,17 +19,40 @@ static void drive_target(const Joint<D>& joint, float time_s, JointRow<D>& row) 
   row.target_rate = joint.drive_amplitude * 2.0f * kPi * joint.drive_hertz * cosine;
 }
 
+/// The masses of bodies whose inertia has turned.
+template <int D, int W>
+static void follow_inertia(const StepScratch<D>& scratch, Range range, PinBlocks<D, W>& pins) {
+  if (Dim<D>::kSpin == 1) return;
+  for (int i = range.begin; i < range.end; ++i) {
+    PinBlock<D, W>& block = pins.blocks[static_cast<std::size_t>(i)];
+    for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+      const std::uint32_t a = block.body_a[lane];
+      const std::uint32_t b = block.body_b[lane];
+      if (scratch.inertia_turned[a] == 0 && scratch.inertia_turned[b] == 0) continue;
+      set_mass(block.mass_a, lane, scratch.masses[a]);
+      set_mass(block.mass_b, lane, scratch.masses[b]);
+    }
+  }
+}
+
 /// C, J and K^-1 of every joint at the present poses: wherever positions have moved since.
 ///
-/// Reads joints, poses, deltas and masses; writes joint_rows, each its own, so any split into
-/// ranges gives the same bits.
+/// Reads joints, poses, deltas and masses; writes pins and joint rows, each its own, so any split
+/// into ranges gives the same bits.
 template <int D>
-void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
-                     StepScratch<D>& scratch) {
-  workers.parallel_for(static_cast<int>(scratch.joint_rows.size()), kJointGrain, [&](Range range) {
-    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
-         ++i) {
-      JointRow<D>& row = scratch.joint_rows[i];
+void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                     Workers& workers, StepScratch<D>& scratch) {
+  with_blocks(scratch.pins, [&]<int W>(PinBlocks<D, W>& pins) {
+    workers.parallel_for(static_cast<int>(pins.blocks.size()), kBlockGrain, [&](Range range) {
+      follow_inertia(scratch, range, pins);
+      PinKernels<D, W>::evaluate(kLimitReach_substeps * context.h, pin_range<D, W>(scratch, range));
+    });
+  });
+  const std::vector<int>& single = scratch.single_rows.order;
+  workers.parallel_for(static_cast<int>(single.size()), kJointGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const int place = single[static_cast<std::size_t>(i)];
+      JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(place)];
       drive_target(state.joints[row.joint], time_s, row);
       row.mass_a = scratch.masses[row.body_a];
       row.mass_b = scratch.masses[row.body_b];
@@ -37,7 +61,9 @@ void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
   });
 }
 
-template void evaluate_joints(const WorldState<2>&, float, Workers&, StepScratch<2>&);
-template void evaluate_joints(const WorldState<3>&, float, Workers&, StepScratch<3>&);
+template void evaluate_joints(const StepContext<2>&, const WorldState<2>&, float, Workers&,
+                              StepScratch<2>&);
+template void evaluate_joints(const StepContext<3>&, const WorldState<3>&, float, Workers&,
+                              StepScratch<3>&);
 
 }  // namespace cycloid::solver

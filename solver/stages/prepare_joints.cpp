@@ -45,7 +45,7 @@ static void set_axis(const StepContext<D>& context, const Joint<D>& joint, Joint
   row.target_rate = 0.0f;
   row.lower = joint.lower;
   row.upper = joint.upper;
-  row.limit_reach_s = 4.0f * context.h;
+  row.limit_reach_s = kLimitReach_substeps * context.h;
   row.motor_speed = joint.motor_speed;
   row.motor_impulse_max = context.h * joint.motor_max;
 }
@@ -67,11 +67,12 @@ static void set_cone(float share, const Joint<3>& joint, JointRow<3>& row) {
   row.cone_impulse = row.limit_enabled ? share * joint.cone_impulse : 0.0f;
 }
 
+/// @param row  May be of another joint and tick: everything is written but what evaluate_rows
+/// writes, which is a good part of it.
 template <int D>
-static JointRow<D> make_row(const StepContext<D>& context, const WorldState<D>& state,
-                            const StepScratch<D>& scratch, std::uint32_t slot) {
+static void set_row(const StepContext<D>& context, const WorldState<D>& state,
+                    const StepScratch<D>& scratch, std::uint32_t slot, JointRow<D>& row) {
   const Joint<D>& joint = state.joints[slot];
-  JointRow<D> row{};
   row.joint = slot;
   row.body_a = joint.body_a;
   row.body_b = joint.body_b;
@@ -85,7 +86,8 @@ static JointRow<D> make_row(const StepContext<D>& context, const WorldState<D>& 
   set_axis(context, joint, row);
   take_impulses(context.tuning.warm_starting, joint, row);
   set_cone(context.tuning.warm_starting, joint, row);
-  return row;
+  row.in_island = row.solved_directly = row.relaxes = row.limit_near = false;
+  row.rows.drop();
 }
 
 /// One row per live joint, in the order of the colouring.
@@ -94,10 +96,10 @@ static JointRow<D> make_row(const StepContext<D>& context, const WorldState<D>& 
 template <int D>
 void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
                     StepScratch<D>& scratch) {
-  scratch.joint_rows.clear();
-  for (const int slot : scratch.joint_coloring.order)
-    scratch.joint_rows.push_back(
-        make_row(context, state, scratch, static_cast<std::uint32_t>(slot)));
+  const std::vector<int>& order = scratch.joint_coloring.order;
+  scratch.joint_rows.resize(order.size());
+  for (std::size_t i = 0; i < order.size(); ++i)
+    set_row(context, state, scratch, static_cast<std::uint32_t>(order[i]), scratch.joint_rows[i]);
 }
 
 template void prepare_joints(const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);

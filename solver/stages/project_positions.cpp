@@ -48,7 +48,7 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
   integrate_velocities(context, workers, scratch);
   evaluate_contacts<D, W>(workers, scratch);
   bounce_contacts<D, W>(context, workers, scratch);
-  evaluate_joints(state, time_s, workers, scratch);
+  evaluate_joints(context, state, time_s, workers, scratch);
   drive_joints(context, scratch);
   scratch.saved_motions = scratch.motions;
   integrate_positions(context, state, workers, scratch);

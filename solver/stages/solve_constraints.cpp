@@ -20,10 +20,13 @@ template <int D, int W>
 void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
   const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
-  for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
-    with_bodies<D>(scratch.joint_rows[static_cast<std::size_t>(i)], motions,
-                   [](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { warm_start(row, a, b); });
-  });
+  for_each_joint_by_color(
+      workers, scratch,
+      []<int P>(const PinRange<D, P>& pins) { PinKernels<D, P>::warm_start(pins); },
+      [&](JointRow<D>& joint) {
+        with_bodies<D>(joint, motions,
+                       [](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { warm_start(row, a, b); });
+      });
   for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
     ContactKernels<D, W>::warm_start(block_range<D, W>(scratch, range));
   });
@@ -40,11 +43,14 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
   const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   solve_trees(context, sweep, scratch);
-  for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
-    with_bodies<D>(
-        scratch.joint_rows[static_cast<std::size_t>(i)], motions,
-        [&](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { solve(context, sweep, row, a, b); });
-  });
+  for_each_joint_by_color(
+      workers, scratch,
+      [&]<int P>(const PinRange<D, P>& pins) { PinKernels<D, P>::sweep(context, sweep, pins); },
+      [&](JointRow<D>& joint) {
+        with_bodies<D>(joint, motions, [&](JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+          solve(context, sweep, row, a, b);
+        });
+      });
   for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
     ContactKernels<D, W>::sweep(context, sweep, block_range<D, W>(scratch, range));
   });

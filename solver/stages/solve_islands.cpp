@@ -1,5 +1,6 @@
 #include "solver/constraints/contact_lanes.hpp"
 #include "solver/stages/island_rows.hpp"
+#include "solver/stages/pin_rows.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -25,7 +26,7 @@ static bool misses(const StepContext<D>& context, const StepScratch<D>& scratch,
   return false;
 }
 
-/// Whether a joint of an island does.
+/// Whether a joint of an island does. @pre none is a pin, as in islands that are solved at once.
 template <int D>
 static bool any_joint_misses(const StepContext<D>& context, const StepScratch<D>& scratch,
                              const typename IslandSolver<D>::Island& island, float bound) {
@@ -33,6 +34,22 @@ static bool any_joint_misses(const StepContext<D>& context, const StepScratch<D>
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const auto place = static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place);
     if (misses(context, scratch, scratch.joint_rows[place], bound)) return true;
+  }
+  return false;
+}
+
+/// Whether a joint of an island does that is to be weighed, by more than kWild. @pre of pins, it
+/// was looked for.
+template <int D>
+static bool any_joint_is_wild(const StepContext<D>& context, const StepScratch<D>& scratch,
+                              const typename IslandSolver<D>::Island& island) {
+  const auto& sources = scratch.islands_solved.sources;
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const auto place = static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place);
+    const bool is_wild = scratch.pins.lane_of[place] != Pins<D>::kNone
+                             ? is_wild_pin(scratch.pins, place)
+                             : misses(context, scratch, scratch.joint_rows[place], kWild);
+    if (is_wild) return true;
   }
   return false;
 }
@@ -96,11 +113,31 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
 template <int D, int W>
 static void weigh_island(const StepContext<D>& context, StepScratch<D>& scratch,
                          typename IslandSolver<D>::Island& island) {
-  if (!any_joint_misses(context, scratch, island, kWild)) return;
+  if (!any_joint_is_wild(context, scratch, island)) return;
   if (!island.grouped) list_weighed(scratch, island);
+  const auto& sources = scratch.islands_solved.sources;
+  const auto for_each_joint = [&](auto&& act) {
+    for (int g = island.joints.begin; g < island.joints.end; ++g)
+      act(static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place));
+  };
+  for_each_joint([&](std::size_t place) { unpack_pin(scratch.pins, place, scratch.joint_rows); });
   gather_island<D, W>(context, scratch, island);
   scratch.islands_solved.weaken_guess(island, scratch.masses);
   scatter_island<D, W>(scratch, island);
+  for_each_joint(
+      [&](std::size_t place) { take_impulses(scratch.joint_rows, place, scratch.pins); });
+}
+
+/// Looks at the pins of all islands that are to be weighed, and so at all.
+template <int D>
+static void look_for_wild_pins(const StepContext<D>& context, StepScratch<D>& scratch) {
+  bool any = false;
+  for (const auto& island : scratch.islands_solved.islands) any = any || island.weighed;
+  if (!any) return;
+  with_blocks(scratch.pins, [&]<int P>(PinBlocks<D, P>& pins) {
+    const Range all{0, static_cast<int>(pins.blocks.size())};
+    PinKernels<D, P>::look_for_wild(context, kWild, pin_range<D, P>(scratch, all));
+  });
 }
 
 /// Whether contacts of an island that was solved as a whole are left to the sweeps. Not what they
@@ -149,6 +186,7 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   ContactKernels<D, W>::look_for_rest(
       context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
   const Unrest all = begin_settling<D, W>(contacts);
+  look_for_wild_pins(context, scratch);
   for (auto& island : solver.islands) {
     if (island.weighed) weigh_island<D, W>(context, scratch, island);
     if (!island.taken) continue;

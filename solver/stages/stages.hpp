@@ -2,6 +2,7 @@
 
 #include "solver/collision/collide.hpp"
 #include "solver/constraints/contact_kernels.hpp"
+#include "solver/constraints/pin_kernels.hpp"
 #include "solver/step_context.hpp"
 #include "solver/step_scratch.hpp"
 
@@ -31,6 +32,10 @@ void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
 template <int D>
 void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
                     StepScratch<D>& scratch);
+/// @param lanes  The width that is asked for; 0 leaves it to how many pins there are.
+template <int D>
+void prepare_pins(int lanes, const StepContext<D>& context, const WorldState<D>& state,
+                  StepScratch<D>& scratch);
 template <int D, int W>
 void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch);
@@ -42,8 +47,8 @@ void evaluate_contacts(Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
 void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D>
-void evaluate_joints(const WorldState<D>& state, float time_s, Workers& workers,
-                     StepScratch<D>& scratch);
+void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+                     Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void factor_trees(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D>
@@ -90,6 +95,8 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
 template <int D, int W>
 void store_impulses(Workers& workers, StepScratch<D>& scratch);
 template <int D>
+void store_pins(StepScratch<D>& scratch);
+template <int D>
 void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch);
 template <int D>
@@ -127,6 +134,38 @@ void for_each_by_color(const Colors& colors, Workers& workers, int grain, Run&& 
   for_each_range_by_color(colors, workers, grain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) run(i);
   });
+}
+
+/// What a kernel of pins works on. @pre the blocks of the range share no body that moves.
+template <int D, int W>
+PinRange<D, W> pin_range(StepScratch<D>& scratch, Range range) {
+  PinBlock<D, W>* blocks = std::get<PinBlocks<D, W>>(scratch.pins.blocks).blocks.data();
+  return {blocks + range.begin, blocks + range.end, scratch.motions.data()};
+}
+
+/// The joints colour after colour: `on_pins` for ranges of blocks of pins, `on_row` for every other
+/// row; inside a colour in parallel, as for_each_by_color.
+template <int D, class OnPins, class OnRow>
+void for_each_joint_by_color(Workers& workers, StepScratch<D>& scratch, OnPins&& on_pins,
+                             OnRow&& on_row) {
+  const Coloring& single = scratch.single_rows;
+  const auto row_at = [&](int i) -> JointRow<D>& {
+    const int place = single.order[static_cast<std::size_t>(i)];
+    return scratch.joint_rows[static_cast<std::size_t>(place)];
+  };
+  for (std::size_t c = 0; c < single.colors.size(); ++c) {
+    with_blocks(scratch.pins, [&]<int W>(PinBlocks<D, W>& pins) {
+      const Range color = pins.colors[c];
+      workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
+        on_pins(pin_range<D, W>(scratch, {color.begin + range.begin, color.begin + range.end}));
+      });
+    });
+    const Range color = single.colors[c];
+    workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
+      for (int i = range.begin; i < range.end; ++i) on_row(row_at(color.begin + i));
+    });
+  }
+  for (int i = single.overflow.begin; i < single.overflow.end; ++i) on_row(row_at(i));
 }
 
 /// What a kernel of contacts works on. @pre the blocks of the range share no body that moves.

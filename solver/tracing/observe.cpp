@@ -135,13 +135,14 @@ static JointWork<D> work_of(const JointRow<D>& row) {
 /// cause.
 template <int D>
 static void write_work(const StepScratch<D>& scratch, ReadBlocks<D> read, PhaseWriter& writer) {
-  std::vector<const JointRow<D>*> joints;
+  std::vector<JointWork<D>> joints;
   for (const JointRow<D>& row : scratch.joint_rows) {
-    if (row.joint >= joints.size()) joints.resize(row.joint + 1, nullptr);
-    joints[row.joint] = &row;
+    if (row.joint >= joints.size()) joints.resize(row.joint + 1);
+    joints[row.joint] = work_of(row);
   }
+  read_pins(scratch, joints);
   for (std::size_t slot = 0; slot < joints.size(); ++slot)
-    if (joints[slot] != nullptr) writer.object("joint", slot, work_of(*joints[slot]));
+    if (joints[slot].body_a != kNone) writer.object("joint", slot, joints[slot]);
   std::vector<ContactWork<D>> contacts(scratch.contacts.size());
   read(scratch, contacts);
   for (std::size_t i = 0; i < contacts.size(); ++i)

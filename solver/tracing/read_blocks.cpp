@@ -1,17 +1,7 @@
+#include "solver/constraints/single_lanes.hpp"
 #include "solver/tracing/tracer.hpp"
 
 namespace cycloid::solver {
-
-template <int W>
-static float lane_of(const Lanes<W>& lanes, int lane) {
-  return lanes.raw[lane];
-}
-template <int N, int W>
-static Vec<N> lane_of(const Vec<N, Lanes<W>>& lanes, int lane) {
-  Vec<N> value;
-  for (int i = 0; i < N; ++i) value[i] = lane_of(lanes[i], lane);
-  return value;
-}
 
 template <int D, int W>
 static PointWork<D> point_of(const typename ContactBlock<D, W>::Point& point, const Vec<D>& between,

@@ -12,6 +12,10 @@ void read_blocks(const StepScratch<D>& scratch, std::vector<ContactWork<D>>& con
 template <int D>
 using ReadBlocks = void (*)(const StepScratch<D>& scratch, std::vector<ContactWork<D>>& contacts);
 
+/// The joints in lanes, each at its slot.
+template <int D>
+void read_pins(const StepScratch<D>& scratch, std::vector<JointWork<D>>& joints);
+
 /// Adds to scratch.trace what the phase has left. Reads and changes nothing else.
 template <int D>
 void observe(const TracePoint& at, const WorldState<D>& state, const StepScratch<D>& scratch,

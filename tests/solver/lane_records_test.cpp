@@ -1,4 +1,5 @@
 #include <bit>
+#include <cmath>
 #include <limits>
 #include <vector>
 
@@ -83,6 +84,25 @@ TEST(LaneRecords, SineAndCosineOfLanesAreThoseOfEachAngleToTheBit) {
       const float in_lane[] = {sine.raw[lane], cosine.raw[lane]};
       EXPECT_EQ(std::bit_cast<std::uint32_t>(in_lane[0]), std::bit_cast<std::uint32_t>(s)) << angle;
       EXPECT_EQ(std::bit_cast<std::uint32_t>(in_lane[1]), std::bit_cast<std::uint32_t>(c)) << angle;
+    }
+  }
+}
+
+TEST(LaneRecords, AnglesOfLanesAreThoseOfEachPointToTheBit) {
+  constexpr float kInfinity = std::numeric_limits<float>::infinity();
+  std::vector<float> parts = {0.0f,       -0.0f, 1.0e-40f, 1.0f,      -1.0f,     0.41421356f,
+                              2.4142136f, 3.0f,  1.0e30f,  kInfinity, -kInfinity};
+  for (int i = 0; i < 61; ++i) parts.push_back(0.037f * static_cast<float>(i * i % 89 - 44));
+  for (const float x : parts) {
+    for (std::size_t i = 0; i + 4 <= parts.size(); i += 4) {
+      const Lanes<4> angles = atan2(Lanes<4>::load(&parts[i]), Lanes<4>(x));
+      for (int lane = 0; lane < 4; ++lane) {
+        const float y = parts[i + static_cast<std::size_t>(lane)];
+        const float angle = angles.raw[lane];
+        if (std::isnan(atan2(y, x)) && std::isnan(angle)) continue;
+        EXPECT_EQ(std::bit_cast<std::uint32_t>(angle), std::bit_cast<std::uint32_t>(atan2(y, x)))
+            << y << " over " << x;
+      }
     }
   }
 }

@@ -1,11 +1,9 @@
 #include "solver/constraints/joints/swing_twist.hpp"
 
+#include "solver/constraints/joint_bounds.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
-
-/// Of 1 + u . u': within 0.014 rad of the other way round, neither twist nor tangent has digits.
-static constexpr float kLeastTogether = 1.0e-4f;
 
 AxisPair axis_pair(const JointFrame<3>& frame, const Vec<3>& axis) {
   return axis_pair(frame, axis, axis);

@@ -26,6 +26,8 @@ function(precompile_for_the_matrix)
   set(with_flags_of_their_own solver/collision/four_cornered_avx2.cpp
     solver/collision/four_cornered_avx512.cpp solver/constraints/contact_kernels.cpp
     solver/constraints/contact_kernels_avx2.cpp solver/constraints/contact_kernels_avx512.cpp
+    solver/constraints/pin_kernels.cpp solver/constraints/pin_kernels_avx2.cpp
+    solver/constraints/pin_kernels_avx512.cpp
     solver/tracing/digest_kernels_avx2.cpp solver/instruction_sets.cpp)
   compile_alone(cycloid_solver ${with_flags_of_their_own})
   list(TRANSFORM with_flags_of_their_own PREPEND ${CMAKE_SOURCE_DIR}/)

@@ -1,0 +1,10 @@
+// Compiled with -mavx512f where CYCLOID_AVX512 is defined; called only where has_avx512_kernels()
+// says so. Every name that this file defines holds the width 528: see contact_kernels_avx2.cpp.
+#include "solver/constraints/pin_sweeps.hpp"
+
+namespace cycloid::solver {
+
+template struct PinKernels<2, kAvx512Lanes>;
+template struct PinKernels<3, kAvx512Lanes>;
+
+}  // namespace cycloid::solver

@@ -1,0 +1,258 @@
+#pragma once
+
+#include "solver/constraints/pin_evaluation.hpp"
+
+namespace cycloid::solver {
+
+/// The text of the kernels of pins, for the files that compile them and no others (see
+/// contact_sweeps.hpp). The formulas are those of joint_solve.hpp.
+
+/// kRigid or the joints' softness, as a value: a constant that is referred to would be defined by
+/// this file too.
+template <int W, int D>
+[[gnu::always_inline]] inline Softness softness_of(const StepContext<D>& context, Sweep kind) {
+  return kind == Sweep::kRelax ? Softness{0.0f, 1.0f, 0.0f} : context.joint;
+}
+
+/// An impulse along a couple that leaves the equalities as satisfied as they were (apply_held).
+template <int N, int D, int W>
+[[gnu::always_inline]] inline void turn_held(const Couple<D, W>& couple, const Lanes<W>& impulse,
+                                             PinBlock<D, W>& block, PinMotions<D, W>& motions) {
+  PinImpulse<D, W> sum;
+  add_couple(couple, impulse, sum);
+  for (int i = 0; i < N; ++i) {
+    const Lanes<W> change = -couple.reaction[i] * impulse;
+    add_equality(block, i, change, sum);
+    block.impulse[i] += change;
+  }
+  apply(block, sum, motions);
+}
+
+/// |lambda| <= bound, at the speed that is wanted.
+template <int N, int D, int W>
+[[gnu::always_inline]] inline void solve_motor(PinBlock<D, W>& block, PinMotions<D, W>& motions) {
+  using L = Lanes<W>;
+  PinTurns<D, W>& turns = *block.turns;
+  const L speed = speed_of_couple(turns.axis, motions);
+  const L wanted = turns.motor_impulse - turns.axis.mass * (speed - turns.motor_speed);
+  const L bound = turns.motor_impulse_max;
+  const L accumulated = max(-bound, min(wanted, bound));
+  turn_held<N>(turns.axis, accumulated - turns.motor_impulse, block, motions);
+  turns.motor_impulse = accumulated;
+}
+
+/// One limit along a couple, as solve_limit of rows.
+/// @param sign  1 of a lower one, -1 of an upper.
+template <int N, int D, int W>
+[[gnu::always_inline]] inline void solve_limit(const StepContext<D>& context, Sweep kind,
+                                               const Couple<D, W>& couple, const Lanes<W>& room,
+                                               float sign, Lanes<W>& impulse, PinBlock<D, W>& block,
+                                               PinMotions<D, W>& motions) {
+  using L = Lanes<W>;
+  const Softness soft = softness_of<W>(context, kind);
+  const auto open = room > L(0.0f);
+  const L bias = select(open, room * L(context.inverse_h), L(soft.bias_rate) * room);
+  const L mass_scale = select(open, L(1.0f), L(soft.mass_scale));
+  const L impulse_scale = select(open, L(0.0f), L(soft.impulse_scale));
+  const L speed = L(sign) * speed_of_couple(couple, motions);
+  const L change = -couple.mass * mass_scale * (speed + bias) - impulse_scale * impulse;
+  const L accumulated = max(impulse + change, L(0.0f));
+  turn_held<N>(couple, L(sign) * (accumulated - impulse), block, motions);
+  impulse = accumulated;
+}
+
+template <int N, int W>
+[[gnu::always_inline]] inline void solve_cone(const StepContext<2>&, Sweep, PinBlock<2, W>&,
+                                              PinMotions<2, W>&) {}
+template <int N, int W>
+[[gnu::always_inline]] inline void solve_cone(const StepContext<3>& context, Sweep kind,
+                                              PinBlock<3, W>& block, PinMotions<3, W>& motions) {
+  using L = Lanes<W>;
+  if (!block.form.has_cone) return;
+  PinTurns<3, W>& turns = *block.turns;
+  L impulse = turns.cone_impulse;
+  solve_limit<N>(context, kind, turns.swing, turns.cone - turns.swing.angle, -1.0f, impulse, block,
+                 motions);
+  turns.cone_impulse = select(turns.near > L(0.0f), impulse, turns.cone_impulse);
+}
+
+template <int M, int W>
+[[gnu::always_inline]] inline void keep_where(const typename Lanes<W>::Mask& now,
+                                              const Vec<M, Lanes<W>>& before,
+                                              Vec<M, Lanes<W>>& value) {
+  for (int i = 0; i < M; ++i) value[i] = select(now, value[i], before[i]);
+}
+
+/// The limits, where they are near. Another lane's limit must not show, not even in the sign of a
+/// zero, so lanes where none is near are put back.
+template <int N, int D, int W>
+[[gnu::always_inline]] inline void solve_limits(const StepContext<D>& context, Sweep kind,
+                                                PinBlock<D, W>& block, PinMotions<D, W>& motions) {
+  using L = Lanes<W>;
+  PinTurns<D, W>& turns = *block.turns;
+  if (!any_above_zero(turns.near)) return;
+  L before[N];
+  for (int i = 0; i < N; ++i) before[i] = block.impulse[i];
+  const PinMotions<D, W> still = motions;
+  const L angle = turns.axis.angle;
+  L lower = turns.lower_impulse;
+  L upper = turns.upper_impulse;
+  solve_limit<N>(context, kind, turns.axis, angle - turns.lower, 1.0f, lower, block, motions);
+  solve_limit<N>(context, kind, turns.axis, turns.upper - angle, -1.0f, upper, block, motions);
+  solve_cone<N>(context, kind, block, motions);
+  const auto near = turns.near > L(0.0f);
+  turns.lower_impulse = select(near, lower, turns.lower_impulse);
+  turns.upper_impulse = select(near, upper, turns.upper_impulse);
+  for (int i = 0; i < N; ++i) block.impulse[i] = select(near, block.impulse[i], before[i]);
+  keep_where<D, W>(near, still.a.velocity, motions.a.velocity);
+  keep_where<Dim<D>::kSpin, W>(near, still.a.spin, motions.a.spin);
+  keep_where<D, W>(near, still.b.velocity, motions.b.velocity);
+  keep_where<Dim<D>::kSpin, W>(near, still.b.spin, motions.b.spin);
+}
+
+/// Friction about every axis: three rows at once, |lambda| <= bound.
+template <int W>
+[[gnu::always_inline]] inline void solve_rubbing(const StepContext<2>&, PinBlock<2, W>&,
+                                                 PinMotions<2, W>&) {}
+template <int W>
+[[gnu::always_inline]] inline void solve_rubbing(const StepContext<3>& context,
+                                                 PinBlock<3, W>& block, PinMotions<3, W>& motions) {
+  using L = Lanes<W>;
+  PinTurns<3, W>& turns = *block.turns;
+  L change[3];
+  for (int i = 0; i < 3; ++i) change[i] = motions.b.spin[i] - motions.a.spin[i];
+  turns.rub_factor.solve(change, 3);
+  L size(0.0f);
+  for (int i = 0; i < 3; ++i) {
+    change[i] = turns.rub_impulse[i] - L(context.tuning.over_relaxation) * change[i];
+    size += change[i] * change[i];
+  }
+  const L bound = turns.rub_impulse_max;
+  const auto slips = size > bound * bound;
+  const L scale = select(slips, bound / sqrt(select(slips, size, L(1.0f))), L(1.0f));
+  Vec<3, L> impulse;
+  for (int i = 0; i < 3; ++i) {
+    const L accumulated = scale * change[i];
+    impulse[i] = accumulated - turns.rub_impulse[i];
+    turns.rub_impulse[i] = accumulated;
+  }
+  motions.a.spin += turned_by<3, W>(block.mass_a, -impulse);
+  motions.b.spin += turned_by<3, W>(block.mass_b, impulse);
+}
+
+/// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale lambda, as solve_block.
+template <int N, int D, int W>
+[[gnu::always_inline]] inline void solve_equalities(const StepContext<D>& context, Sweep kind,
+                                                    PinBlock<D, W>& block,
+                                                    PinMotions<D, W>& motions) {
+  using L = Lanes<W>;
+  const Softness soft = softness_of<W>(context, kind);
+  L change[Dim<D>::kPinEqualities];
+  for (int i = 0; i < N; ++i)
+    change[i] = speed_of_equality(block, i, motions) + L(soft.bias_rate) * block.error[i];
+  block.factor.solve(change, N);
+  PinImpulse<D, W> sum;
+  for (int i = 0; i < N; ++i) {
+    const L old = block.impulse[i];
+    const L wanted = old - L(context.tuning.over_relaxation) *
+                               (L(soft.mass_scale) * change[i] + L(soft.impulse_scale) * old);
+    add_equality(block, i, wanted - old, sum);
+    block.impulse[i] = wanted;
+  }
+  apply(block, sum, motions);
+}
+
+/// One sweep over a pin, in the order of joint_solve.hpp.
+template <int N, int D, int W>
+[[gnu::always_inline]] inline void sweep_pin(const StepContext<D>& context, Sweep kind,
+                                             const PinRange<D, W>& range, PinBlock<D, W>& block) {
+  const PinForm& form = block.form;
+  PinMotions<D, W> motions = gather_velocities(range, block);
+  if (form.rubs && form.has_cone) solve_rubbing(context, block, motions);
+  if (form.has_motor) solve_motor<N>(block, motions);
+  if (form.has_limits) solve_limits<N>(context, kind, block, motions);
+  solve_equalities<N>(context, kind, block, motions);
+  if (form.rubs && !form.has_cone) solve_rubbing(context, block, motions);
+  scatter_velocities(range, block, motions);
+}
+
+template <int W>
+[[gnu::always_inline]] inline void add_rubbing(const PinBlock<2, W>&, PinImpulse<2, W>&) {}
+template <int W>
+[[gnu::always_inline]] inline void add_rubbing(const PinBlock<3, W>& block, PinImpulse<3, W>& sum) {
+  if (!block.form.rubs) return;
+  for (int i = 0; i < 3; ++i) {
+    sum.angular_a[i] -= block.turns->rub_impulse[i];
+    sum.angular_b[i] += block.turns->rub_impulse[i];
+  }
+}
+
+template <int W>
+[[gnu::always_inline]] inline void add_cone(const PinBlock<2, W>&, PinImpulse<2, W>&) {}
+template <int W>
+[[gnu::always_inline]] inline void add_cone(const PinBlock<3, W>& block, PinImpulse<3, W>& sum) {
+  if (block.form.has_cone) add_couple(block.turns->swing, -block.turns->cone_impulse, sum);
+}
+
+template <int D, int W>
+[[gnu::always_inline]] inline void add_turns(const PinBlock<D, W>& block, PinImpulse<D, W>& sum) {
+  add_rubbing(block, sum);
+  if (!block.form.has_motor && !block.form.has_limits) return;
+  const PinTurns<D, W>& turns = *block.turns;
+  add_couple(turns.axis, turns.lower_impulse - turns.upper_impulse, sum);
+  add_couple(turns.axis, turns.motor_impulse, sum);
+  add_cone(block, sum);
+}
+
+template <int D, int W>
+void PinKernels<D, W>::evaluate(float limit_reach_s, const PinRange<D, W>& range) {
+  for (PinBlock<D, W>* block = range.begin; block != range.end; ++block)
+    evaluate_pin(limit_reach_s, range, *block);
+}
+
+template <int D, int W>
+void PinKernels<D, W>::warm_start(const PinRange<D, W>& range) {
+  for (PinBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    PinMotions<D, W> motions = gather_velocities(range, *block);
+    PinImpulse<D, W> sum;
+    const int count = equalities_of<D>(block->form);
+    for (int i = 0; i < count; ++i) add_equality(*block, i, block->impulse[i], sum);
+    if (block->turns != nullptr) add_turns(*block, sum);
+    apply(*block, sum, motions);
+    scatter_velocities(range, *block, motions);
+  }
+}
+
+template <int D, int W>
+void PinKernels<D, W>::look_for_wild(const StepContext<D>& context, float bound,
+                                     const PinRange<D, W>& range) {
+  using L = Lanes<W>;
+  for (PinBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    const PinMotions<D, W> motions = gather_velocities(range, *block);
+    const int count = equalities_of<D>(block->form);
+    L most(0.0f);
+    for (int i = 0; i < count; ++i) {
+      const L missing =
+          speed_of_equality(*block, i, motions) + L(context.joint.bias_rate) * block->error[i];
+      most = max(most, absolute(missing));
+    }
+    float missed[kLaneCount<W>];
+    most.store(missed);
+    block->wild = 0;
+    for (int lane = 0; lane < kLaneCount<W>; ++lane)
+      if (missed[lane] > bound) block->wild |= LaneBits{1} << lane;
+  }
+}
+
+template <int D, int W>
+void PinKernels<D, W>::sweep(const StepContext<D>& context, Sweep kind,
+                             const PinRange<D, W>& range) {
+  for (PinBlock<D, W>* block = range.begin; block != range.end; ++block) {
+    if (block->form.is_hinge)
+      sweep_pin<Dim<D>::kPinEqualities>(context, kind, range, *block);
+    else
+      sweep_pin<D>(context, kind, range, *block);
+  }
+}
+
+}  // namespace cycloid::solver

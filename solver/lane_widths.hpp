@@ -1,0 +1,35 @@
+#pragma once
+
+#include "solver/instruction_sets.hpp"
+#include "solver/lanes.hpp"
+
+namespace cycloid::solver {
+
+/// Which width a kernel runs in. None changes a bit; they differ in how long they take.
+
+/// A width in the instruction set that this processor has for it.
+inline int in_best_set(int lanes) {
+  if (lanes == 8 && has_avx2_kernels()) return kAvx2Lanes;
+  if (lanes == 16 && has_avx512_kernels()) return kAvx512Lanes;
+  return lanes;
+}
+
+/// The width for what fills as many lanes as it likes; 0 stands for the widest of one instruction.
+inline int widest_lanes(int lanes) {
+  if (lanes != 0) return in_best_set(lanes);
+  return has_avx512_kernels() ? kAvx512Lanes : has_avx2_kernels() ? kAvx2Lanes : 4;
+}
+
+/// The width that solves constraints soonest: the wider one where it is there and saves blocks, of
+/// 16 lanes a third of them, for such a block takes longer. One lane never does: even a single
+/// constraint costs less in a block of four, whose gathering is made of whole loads.
+/// @param blocks_of  How many blocks of so many lanes their colours fill.
+template <class BlocksOf>
+int width_that_saves(BlocksOf&& blocks_of) {
+  if (!has_avx2_kernels()) return 4;
+  const int of_eight = blocks_of(8);
+  if (has_avx512_kernels() && 3 * blocks_of(16) < 2 * of_eight) return kAvx512Lanes;
+  return of_eight < blocks_of(4) ? kAvx2Lanes : 4;
+}
+
+}  // namespace cycloid::solver
