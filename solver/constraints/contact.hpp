@@ -120,7 +120,9 @@ template <int D, int W>
   if (block.rolls) turn_pair(block.extra->rolling_impulse, block, a, b);
 }
 
-/// Holds an impulse of N components to a length of at most `bound`; in the plane an interval.
+/// Holds an impulse of N components to a length of at most `bound`; in the plane an interval. A
+/// bound of 0 leaves nothing, also of an impulse whose square is too small for a float: what has no
+/// friction may share its block with what has.
 template <int N, class L>
 [[gnu::always_inline]] inline void hold_to_cone(const L& bound, L (&impulse)[N]) {
   if constexpr (N == 1) {
@@ -129,7 +131,8 @@ template <int N, class L>
     L square = impulse[0] * impulse[0];
     for (int i = 1; i < N; ++i) square += impulse[i] * impulse[i];
     const L size = sqrt(square);
-    const L scale = select(size > bound, bound / max(size, L(1.0e-30f)), L(1.0f));
+    const L held = select(size > bound, bound / max(size, L(1.0e-30f)), L(1.0f));
+    const L scale = select(bound > L(0.0f), held, L(0.0f));
     for (int i = 0; i < N; ++i) impulse[i] = scale * impulse[i];
   }
 }

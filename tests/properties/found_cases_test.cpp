@@ -80,6 +80,21 @@ const FoundCase kFound[] = {
            {Op::kStep, 6, 0, {}},
            {Op::kCreateJoint, 23, 0, {-48, -50, 89, 0, 0, -86}},
            {Op::kStep, 1, 0, {}}}}},
+    // What does not roll kept an impulse of 1e-34 in a block with what does: the square of its
+    // length was 0, so no bound held it.
+    {"WhatDoesNotRollBesideWhatDoes", false,
+     Case{3,
+          184,
+          1,
+          2,
+          {3, 4},
+          {1, 8},
+          {{Op::kCreateGrid, 0, 0, {0, -42, 0, -75}},
+           {Op::kStep, 1, 0, {}},
+           {Op::kCreateJoint, 59, 52, {-9, 0, 54, 0, 0, 95, 12}},
+           {Op::kCreateBody, 0, 0, {}},
+           {Op::kSetPose, 40, 0, {-46, -34, -61, 0, 0, 0, 0, 97}},
+           {Op::kStep, 6, 0, {}}}}},
 };
 
 INSTANTIATE_TEST_SUITE_P(Found, FoundCases, testing::ValuesIn(kFound),
