@@ -69,6 +69,7 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
   }
   StepContext<D> now = context;
   for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
+    // Islands that have all take back what leans; in one order they stay at rest for longer.
     now.odd = (tick + substep) % 2 != 0;
     const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
     traced.substep = substep;
@@ -94,9 +95,9 @@ static void solve_contacts(int lanes, const StepContext<D>& context, const World
   prepare_pins(lanes, paced, state, scratch);
   traced(Phase::kPrepare);
   solve_substeps<D, W>(paced, state, traced, workers, scratch);
+  store_pins(scratch);
   if (paced.h != context.h) rescale_impulses<D, W>(context.h / paced.h, scratch);
   store_impulses<D, W>(workers, scratch);
-  store_pins(scratch);
   traced(Phase::kStore);
   stop_fast_bodies(context, state, workers, scratch);
   traced(Phase::kStop);

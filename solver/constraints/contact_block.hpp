@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/constraints/lane_bits.hpp"
 #include "solver/constraints/motion_lanes.hpp"
 #include "solver/step_context.hpp"
 
@@ -133,14 +134,6 @@ template <int D, int W>
 [[gnu::always_inline]] inline Arms<D, Lanes<W>> arms_of(
     const ContactBlock<D, W>& block, const typename ContactBlock<D, W>::Point& point) {
   return {point.r_a + block.slide_a, arm_b_of(block, point) + block.slide_b};
-}
-
-/// The mask of the lanes in `bits`.
-template <int W>
-[[gnu::always_inline]] inline typename Lanes<W>::Mask mask_of(LaneBits bits) {
-  typename Lanes<W>::Mask mask{};
-  for (int lane = 0; lane < kLaneCount<W>; ++lane) mask[lane] = static_cast<int>(1u << lane);
-  return (mask & static_cast<int>(bits)) != 0;
 }
 
 /// How far a point has turned away from where it was about each centre, m: what lies on a ball does

@@ -5,15 +5,6 @@
 
 namespace cycloid::solver {
 
-/// Lanes in which a number is above 0.
-template <int W>
-[[gnu::always_inline]] inline LaneBits lanes_above_zero(const Lanes<W>& a) {
-  LaneBits bits = 0;
-  for (int lane = 0; lane < kLaneCount<W>; ++lane)
-    bits |= static_cast<LaneBits>(a.raw[lane] > 0.0f) << lane;
-  return bits;
-}
-
 /// Sets ContactBlock::loaded: by the impulses of the tick before, which all points share.
 template <int D, int W>
 [[gnu::always_inline]] inline void find_load(const LoadBounds& bounds, ContactBlock<D, W>& block) {

@@ -96,6 +96,13 @@ struct PinTurns : SpacePin<D, W> {
   L near;  ///< Above 0 where limits are near enough to be solved (limit_is_near).
 };
 
+/// Lanes in which an equality misses more than the bounds of that name (PinKernels::look_for_rest).
+struct PinRest {
+  LaneBits misses;
+  LaneBits stirs;
+  LaneBits is_wild;
+};
+
 template <int D, int W>
 struct PinBlock {
   using L = Lanes<W>;
@@ -105,7 +112,12 @@ struct PinBlock {
   LaneIndices<W> place;  ///< Of its JointRow; kNone in unused lanes.
   LaneBits moves_a;      ///< Lanes whose body has mass.
   LaneBits moves_b;
-  LaneBits wild;  ///< See PinKernels::look_for_wild.
+  LaneBits used;
+
+  // Of islands. What one has solved, biased sweeps pass by; the others do what they are told.
+  LaneBits settled;  ///< Lanes whose equalities are solved at once.
+  LaneBits relaxes;  ///< All the same relax sweeps act on them.
+  PinRest rest;
   PinForm form;
   PinTurns<D, W>* turns;  ///< Null where the form has none.
 

@@ -14,6 +14,13 @@ struct PinRange {
   Motion<D>* motions;  ///< By body slot.
 };
 
+/// What an equality may miss, m/s or rad/s (solve_islands).
+struct JointBounds {
+  float misses;   ///< Of an island that was at rest.
+  float stirs;    ///< Of one that was not.
+  float is_wild;  ///< Of one that the sweeps have.
+};
+
 /// What is done to pins in lanes, compiled for each width as ContactKernels are: pin_kernels*.cpp,
 /// from one text (pin_sweeps.hpp).
 template <int D, int W>
@@ -23,8 +30,8 @@ struct PinKernels {
   static void evaluate(float limit_reach_s, const PinRange<D, W>& range);
   /// v += M^-1 J^T lambda.
   static void warm_start(const PinRange<D, W>& range);
-  /// Which lanes have an equality that misses more than `bound`, m/s: PinBlock::wild.
-  static void look_for_wild(const StepContext<D>& context, float bound,
+  /// Which lanes have an equality that misses more than each bound.
+  static void look_for_rest(const StepContext<D>& context, const JointBounds& bounds,
                             const PinRange<D, W>& range);
   /// One sweep of sequential impulses. @pre the sweep is none of pseudo-velocities.
   static void sweep(const StepContext<D>& context, Sweep kind, const PinRange<D, W>& range);

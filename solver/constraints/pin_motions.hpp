@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/constraints/lane_bits.hpp"
 #include "solver/constraints/pin_kernels.hpp"
 
 namespace cycloid::solver {

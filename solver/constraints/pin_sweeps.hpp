@@ -77,10 +77,21 @@ template <int N, int W>
 }
 
 template <int M, int W>
-[[gnu::always_inline]] inline void keep_where(const typename Lanes<W>::Mask& now,
-                                              const Vec<M, Lanes<W>>& before,
-                                              Vec<M, Lanes<W>>& value) {
-  for (int i = 0; i < M; ++i) value[i] = select(now, value[i], before[i]);
+[[gnu::always_inline]] inline void put_back(const typename Lanes<W>::Mask& keeps,
+                                            const Vec<M, Lanes<W>>& before,
+                                            Vec<M, Lanes<W>>& value) {
+  for (int i = 0; i < M; ++i) value[i] = select(keeps, value[i], before[i]);
+}
+
+/// Puts the velocities of all other lanes back.
+template <int D, int W>
+[[gnu::always_inline]] inline void keep_where(const typename Lanes<W>::Mask& keeps,
+                                              const PinMotions<D, W>& before,
+                                              PinMotions<D, W>& motions) {
+  put_back<D, W>(keeps, before.a.velocity, motions.a.velocity);
+  put_back<Dim<D>::kSpin, W>(keeps, before.a.spin, motions.a.spin);
+  put_back<D, W>(keeps, before.b.velocity, motions.b.velocity);
+  put_back<Dim<D>::kSpin, W>(keeps, before.b.spin, motions.b.spin);
 }
 
 /// The limits, where they are near. Another lane's limit must not show, not even in the sign of a
@@ -104,10 +115,7 @@ template <int N, int D, int W>
   turns.lower_impulse = select(near, lower, turns.lower_impulse);
   turns.upper_impulse = select(near, upper, turns.upper_impulse);
   for (int i = 0; i < N; ++i) block.impulse[i] = select(near, block.impulse[i], before[i]);
-  keep_where<D, W>(near, still.a.velocity, motions.a.velocity);
-  keep_where<Dim<D>::kSpin, W>(near, still.a.spin, motions.a.spin);
-  keep_where<D, W>(near, still.b.velocity, motions.b.velocity);
-  keep_where<Dim<D>::kSpin, W>(near, still.b.spin, motions.b.spin);
+  keep_where(near, still, motions);
 }
 
 /// Friction about every axis: three rows at once, |lambda| <= bound.
@@ -162,16 +170,36 @@ template <int N, int D, int W>
   apply(block, sum, motions);
 }
 
+/// The same in the lanes of `acting`: others, which an island has solved, keep every bit, whoever
+/// shares their block.
+template <int N, int D, int W>
+[[gnu::always_inline]] inline void solve_acting(const StepContext<D>& context, Sweep kind,
+                                                LaneBits acting, PinBlock<D, W>& block,
+                                                PinMotions<D, W>& motions) {
+  if (acting == block.used) return solve_equalities<N>(context, kind, block, motions);
+  if (acting == 0) return;
+  Lanes<W> before[N];
+  for (int i = 0; i < N; ++i) before[i] = block.impulse[i];
+  const PinMotions<D, W> still = motions;
+  solve_equalities<N>(context, kind, block, motions);
+  const auto acts = mask_of<W>(acting);
+  for (int i = 0; i < N; ++i) block.impulse[i] = select(acts, block.impulse[i], before[i]);
+  keep_where(acts, still, motions);
+}
+
 /// One sweep over a pin, in the order of joint_solve.hpp.
 template <int N, int D, int W>
 [[gnu::always_inline]] inline void sweep_pin(const StepContext<D>& context, Sweep kind,
                                              const PinRange<D, W>& range, PinBlock<D, W>& block) {
   const PinForm& form = block.form;
+  const LaneBits passed = kind == Sweep::kRelax ? block.settled & ~block.relaxes : block.settled;
+  const LaneBits acting = block.used & ~passed;
+  if (acting == 0 && !form.has_motor && !form.has_limits) return;
   PinMotions<D, W> motions = gather_velocities(range, block);
   if (form.rubs && form.has_cone) solve_rubbing(context, block, motions);
   if (form.has_motor) solve_motor<N>(block, motions);
   if (form.has_limits) solve_limits<N>(context, kind, block, motions);
-  solve_equalities<N>(context, kind, block, motions);
+  solve_acting<N>(context, kind, acting, block, motions);
   if (form.rubs && !form.has_cone) solve_rubbing(context, block, motions);
   scatter_velocities(range, block, motions);
 }
@@ -224,7 +252,7 @@ void PinKernels<D, W>::warm_start(const PinRange<D, W>& range) {
 }
 
 template <int D, int W>
-void PinKernels<D, W>::look_for_wild(const StepContext<D>& context, float bound,
+void PinKernels<D, W>::look_for_rest(const StepContext<D>& context, const JointBounds& bounds,
                                      const PinRange<D, W>& range) {
   using L = Lanes<W>;
   for (PinBlock<D, W>* block = range.begin; block != range.end; ++block) {
@@ -236,11 +264,9 @@ void PinKernels<D, W>::look_for_wild(const StepContext<D>& context, float bound,
           speed_of_equality(*block, i, motions) + L(context.joint.bias_rate) * block->error[i];
       most = max(most, absolute(missing));
     }
-    float missed[kLaneCount<W>];
-    most.store(missed);
-    block->wild = 0;
-    for (int lane = 0; lane < kLaneCount<W>; ++lane)
-      if (missed[lane] > bound) block->wild |= LaneBits{1} << lane;
+    block->rest.misses = lanes_above_zero(most - L(bounds.misses));
+    block->rest.stirs = lanes_above_zero(most - L(bounds.stirs));
+    block->rest.is_wild = lanes_above_zero(most - L(bounds.is_wild));
   }
 }
 

@@ -2,6 +2,7 @@
 
 #include "solver/constraints/contact_lanes.hpp"
 #include "solver/direct/island_parts.hpp"
+#include "solver/stages/pin_rows.hpp"
 
 namespace cycloid::solver {
 
@@ -197,6 +198,7 @@ void gather_island(const StepContext<D>& context, StepScratch<D>& scratch,
       gather_point<D, W>(context, scratch, blocks[place], source, stiffness, group, row);
       continue;
     }
+    unpack_pin(scratch.pins, place, scratch.joint_rows);
     const JointRow<D>& joint = scratch.joint_rows[place];
     const JointArms<D> arms = arms_of(joint);
     gather_joint(context, scratch, joint, island, arms, group, row);
@@ -234,6 +236,7 @@ void scatter_island(StepScratch<D>& scratch, const typename IslandSolver<D>::Isl
       auto& point = blocks[place].points[source.point];
       (r == 0 ? point.normal_impulse : point.tangent_impulse[r - 1]).raw[source.lane] = impulse;
     }
+    if (!group.is_contact) take_impulses(scratch.joint_rows, place, scratch.pins);
   }
 }
 

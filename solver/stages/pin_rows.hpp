@@ -23,15 +23,6 @@ void with_pin(AnyPins& pins, std::size_t place, Act&& act) {
   });
 }
 
-/// What PinKernels::look_for_wild found of it.
-template <int D>
-bool is_wild_pin(const Pins<D>& pins, std::size_t place) {
-  bool is_wild = false;
-  with_pin(pins, place,
-           [&](const auto& block, int lane) { is_wild = (block.wild >> lane & 1u) != 0; });
-  return is_wild;
-}
-
 /// Its equalities and their impulses as a joint row has them.
 template <int D>
 void unpack_pin(const Pins<D>& pins, std::size_t place, std::vector<JointRow<D>>& rows) {
@@ -58,6 +49,16 @@ void take_impulses(const std::vector<JointRow<D>>& rows, std::size_t place, Pins
   with_pin(pins, place, [&](auto& block, int lane) {
     for (int i = 0; i < equalities_of<D>(block.form); ++i)
       set_lane(block.impulse[i], lane, rows[place].impulse[i]);
+  });
+}
+
+/// Tells the sweeps whether an island has solved it, and whether relax sweeps act all the same.
+template <int D>
+void settle_pin(std::size_t place, bool settled, bool relaxes, Pins<D>& pins) {
+  with_pin(pins, place, [&](auto& block, int lane) {
+    const LaneBits bit = LaneBits{1} << lane;
+    block.settled = settled ? block.settled | bit : block.settled & ~bit;
+    block.relaxes = relaxes ? block.relaxes | bit : block.relaxes & ~bit;
   });
 }
 

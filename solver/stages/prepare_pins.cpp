@@ -10,11 +10,10 @@
 
 namespace cycloid::solver {
 
-/// The form of a joint as a pin; nothing of what stays a row by itself: other kinds, springs,
-/// position motors and what islands hold.
+/// The form of a joint as a pin; nothing of what stays a row by itself: other kinds, springs and
+/// position motors.
 template <int D>
 static std::optional<PinForm> form_of(const Joint<D>& joint, const JointRow<D>& row) {
-  if (row.in_island) return {};
   PinForm form;
   switch (joint.kind) {
     case JointKind::kRevolute:
@@ -81,8 +80,11 @@ static void set_pin(const WorldState<D>& state, const JointRow<D>& row, std::uin
   block.body_a[lane] = row.body_a;
   block.body_b[lane] = row.body_b;
   block.place[lane] = place;
-  if (row.mass_a.inverse_mass > 0.0f) block.moves_a |= LaneBits{1} << lane;
-  if (row.mass_b.inverse_mass > 0.0f) block.moves_b |= LaneBits{1} << lane;
+  const LaneBits bit = LaneBits{1} << lane;
+  block.used |= bit;
+  if (row.solved_directly) block.settled |= bit;
+  if (row.mass_a.inverse_mass > 0.0f) block.moves_a |= bit;
+  if (row.mass_b.inverse_mass > 0.0f) block.moves_b |= bit;
   set_mass(block.mass_a, lane, row.mass_a);
   set_mass(block.mass_b, lane, row.mass_b);
   set_lane(block.anchor_a, lane, joint.anchor_a);

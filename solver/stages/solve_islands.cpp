@@ -9,9 +9,9 @@ namespace cycloid::solver {
 /// as the next warm start they would set it going the other way, so what was just solved is held to
 /// fifty times less. Overlap may be left half a millimetre beyond the slop.
 static constexpr RestBounds kRest{1.0e-3f, 2.0e-5f, 1.0e-2f};
-/// What a joint may miss, m/s or rad/s, before its island's guess is looked at for its worth where
-/// it is left to the sweeps. Swings of what is solved well miss as much.
-static constexpr float kWild = 1.0f;
+/// The same of joints, m/s or rad/s; and what one may miss before its island's guess is looked at
+/// for its worth where it is left to the sweeps. Swings of what is solved well miss as much.
+static constexpr JointBounds kJointBounds{kRest.misses, kRest.stirs, 1.0f};
 
 /// Whether a rigid row of a joint misses more than the bound, m/s or rad/s.
 template <int D>
@@ -26,30 +26,30 @@ static bool misses(const StepContext<D>& context, const StepScratch<D>& scratch,
   return false;
 }
 
-/// Whether a joint of an island does. @pre none is a pin, as in islands that are solved at once.
+/// One of the bounds on what a joint misses, and what of a block of pins tells which do.
+struct JointBound {
+  float JointBounds::*bound;
+  LaneBits PinRest::*lanes;
+};
+static constexpr JointBound kMisses{&JointBounds::misses, &PinRest::misses};
+static constexpr JointBound kStirs{&JointBounds::stirs, &PinRest::stirs};
+static constexpr JointBound kIsWild{&JointBounds::is_wild, &PinRest::is_wild};
+
+/// Whether a joint of an island misses more than one of the bounds. @pre pins were looked at.
 template <int D>
 static bool any_joint_misses(const StepContext<D>& context, const StepScratch<D>& scratch,
-                             const typename IslandSolver<D>::Island& island, float bound) {
+                             const typename IslandSolver<D>::Island& island,
+                             const JointBound& bound) {
   const auto& sources = scratch.islands_solved.sources;
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const auto place = static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place);
-    if (misses(context, scratch, scratch.joint_rows[place], bound)) return true;
-  }
-  return false;
-}
-
-/// Whether a joint of an island does that is to be weighed, by more than kWild. @pre of pins, it
-/// was looked for.
-template <int D>
-static bool any_joint_is_wild(const StepContext<D>& context, const StepScratch<D>& scratch,
-                              const typename IslandSolver<D>::Island& island) {
-  const auto& sources = scratch.islands_solved.sources;
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const auto place = static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place);
-    const bool is_wild = scratch.pins.lane_of[place] != Pins<D>::kNone
-                             ? is_wild_pin(scratch.pins, place)
-                             : misses(context, scratch, scratch.joint_rows[place], kWild);
-    if (is_wild) return true;
+    bool any = false;
+    with_pin(scratch.pins, place, [&](const auto& block, int lane) {
+      any = (block.rest.*bound.lanes >> lane & 1u) != 0;
+    });
+    if (scratch.pins.lane_of[place] == Pins<D>::kNone)
+      any = misses(context, scratch, scratch.joint_rows[place], kJointBounds.*bound.bound);
+    if (any) return true;
   }
   return false;
 }
@@ -86,7 +86,7 @@ static bool is_restless(const StepContext<D>& context, const StepScratch<D>& scr
     const auto& block = blocks[static_cast<std::size_t>(source.place)];
     if (((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0) return true;
   }
-  return any_joint_misses(context, scratch, island, island.stirred ? kRest.stirs : kRest.misses);
+  return any_joint_misses(context, scratch, island, island.stirred ? kStirs : kMisses);
 }
 
 /// Tells the sweeps what is left to them of an island. Relax sweeps turn the speeds of joints into
@@ -103,8 +103,10 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
   }
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
+    const bool relaxes = island.closes || !solver.has_all;
     scratch.joint_rows[place].solved_directly = !sweeps_joints;
-    scratch.joint_rows[place].relaxes = island.closes || !solver.has_all;
+    scratch.joint_rows[place].relaxes = relaxes;
+    settle_pin(place, !sweeps_joints, relaxes, scratch.pins);
   }
 }
 
@@ -113,31 +115,11 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
 template <int D, int W>
 static void weigh_island(const StepContext<D>& context, StepScratch<D>& scratch,
                          typename IslandSolver<D>::Island& island) {
-  if (!any_joint_is_wild(context, scratch, island)) return;
+  if (!any_joint_misses(context, scratch, island, kIsWild)) return;
   if (!island.grouped) list_weighed(scratch, island);
-  const auto& sources = scratch.islands_solved.sources;
-  const auto for_each_joint = [&](auto&& act) {
-    for (int g = island.joints.begin; g < island.joints.end; ++g)
-      act(static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place));
-  };
-  for_each_joint([&](std::size_t place) { unpack_pin(scratch.pins, place, scratch.joint_rows); });
   gather_island<D, W>(context, scratch, island);
   scratch.islands_solved.weaken_guess(island, scratch.masses);
   scatter_island<D, W>(scratch, island);
-  for_each_joint(
-      [&](std::size_t place) { take_impulses(scratch.joint_rows, place, scratch.pins); });
-}
-
-/// Looks at the pins of all islands that are to be weighed, and so at all.
-template <int D>
-static void look_for_wild_pins(const StepContext<D>& context, StepScratch<D>& scratch) {
-  bool any = false;
-  for (const auto& island : scratch.islands_solved.islands) any = any || island.weighed;
-  if (!any) return;
-  with_blocks(scratch.pins, [&]<int P>(PinBlocks<D, P>& pins) {
-    const Range all{0, static_cast<int>(pins.blocks.size())};
-    PinKernels<D, P>::look_for_wild(context, kWild, pin_range<D, P>(scratch, all));
-  });
 }
 
 /// Whether contacts of an island that was solved as a whole are left to the sweeps. Not what they
@@ -186,7 +168,10 @@ void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   ContactKernels<D, W>::look_for_rest(
       context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
   const Unrest all = begin_settling<D, W>(contacts);
-  look_for_wild_pins(context, scratch);
+  with_blocks(scratch.pins, [&]<int P>(PinBlocks<D, P>& pins) {
+    const Range range{0, static_cast<int>(pins.blocks.size())};
+    PinKernels<D, P>::look_for_rest(context, kJointBounds, pin_range<D, P>(scratch, range));
+  });
   for (auto& island : solver.islands) {
     if (island.weighed) weigh_island<D, W>(context, scratch, island);
     if (!island.taken) continue;
