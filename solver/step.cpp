@@ -2,6 +2,7 @@
 #include "solver/events.hpp"
 #include "solver/floating_point_mode.hpp"
 #include "solver/lane_widths.hpp"
+#include "solver/stages/active_contacts.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/step_memory.hpp"
 #include "solver/tracing/tracer.hpp"
@@ -270,9 +271,10 @@ Error World<D>::step_in_lanes() {
   traced(Phase::kPairs);
   if (paired) {
     collide_pairs(widest_lanes(lanes_), context, state_, *workers_, scratch);
+    if (is_written(scratch.trace)) take_in_resting(state_, scratch);
     traced(Phase::kCollide);  // Else there is nothing of this tick to look at.
   }
-  if (!paired || scratch.contacts.size() > state_.header.limits.contacts) {
+  if (!paired || contact_count(state_, scratch) > state_.header.limits.contacts) {
     state_.header.fault = {state_.header.tick + 1, {kNone, 0}, kFaultContacts};
     return {Code::kFaulted, "limits.contacts"};
   }

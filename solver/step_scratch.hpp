@@ -6,6 +6,7 @@
 #include <type_traits>
 #include <vector>
 
+#include "solver/active_bodies.hpp"
 #include "solver/collision/bounds_tree.hpp"
 #include "solver/collision/manifold.hpp"
 #include "solver/collision/pair_cache.hpp"
@@ -80,13 +81,23 @@ struct FastBody {
   float stop = 1.0f;       ///< The fraction of the tick at which it stops.
 };
 
+/// Which contacts of the state have a body that takes part in the coming tick by itself. A function
+/// of the state, kept because there may be very many others.
+struct ActiveContacts {
+  std::vector<std::uint32_t> places;  ///< Ascending; none where all of them have.
+  bool are_all = true;
+  bool is_known = false;
+};
+
 /// What a world keeps from one step to the next beside its state: what it was told, and caches that
 /// are functions of the state alone and change no result.
 template <int D>
 struct KeptByWorld {
   BoundsTree<D> static_tree;             ///< Of the shapes that cannot move: maybe a landscape.
   std::vector<std::uint32_t> unbounded;  ///< Half-spaces.
-  PairCache<D> pair_cache;  ///< Whoever changes a pose, filter, shape or joint makes it forget.
+  PairCache<D> pair_cache;     ///< Whoever changes a pose, filter, shape or joint makes it forget.
+  ActiveBodies active_bodies;  ///< Whoever changes a velocity, force or sleep touches it.
+  ActiveContacts active_contacts;
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
 };
@@ -109,8 +120,8 @@ struct LiveContact {
 /// The contacts of a tick in the order of their shapes, or those of one chunk of its pairs.
 template <int D>
 struct ContactList {
-  std::vector<Contact<D>> contacts;  ///< Of a tick: become the state's when the step commits.
-  std::vector<LiveContact<D>> live;  ///< Those with a manifold, in their order; others are asleep.
+  std::vector<Contact<D>> contacts;  ///< Of a tick, but for those that rest: become the state's.
+  std::vector<LiveContact<D>> live;  ///< Those with a manifold, in their order.
   std::vector<std::uint32_t> began;  ///< Contacts that touch and did not.
   std::vector<std::uint32_t> ended;  ///< Contacts of the state that no longer touch.
   std::vector<Manifold<D>> found;    ///< Of a batch of pairs; empty where shapes are apart.
@@ -130,11 +141,13 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::vector<ShapePair> sorted_pairs;      ///< For sort_pairs to work in.
   std::vector<ShapePair> pairs;             ///< Sorted by key.
   std::vector<ContactList<D>> contact_chunks;
-  std::vector<LiveContact<D>> live_before;  ///< Before any woke.
+  bool contacts_are_all = true;               ///< With those that rest.
+  std::vector<Contact<D>> merged_contacts;    ///< For take_in_resting to work in.
+  std::vector<std::uint32_t> contact_places;  ///< By what take_in_resting was given: its new one.
+  std::vector<LiveContact<D>> live_before;    ///< Before any woke.
 
-  std::vector<std::uint8_t> active;    ///< By body: it took part by itself as the tick began.
-  std::vector<std::uint8_t> has_mass;  ///< By body: a force moves it.
-  std::uint32_t bodies_asleep = 0;     ///< Those that did not, and could move; later, that do not.
+  std::uint32_t bodies_asleep = 0;  ///< Those that took no part as the tick began, and have mass;
+                                    ///< later, that do not.
 
   bool islands_are_known = false;        ///< Only where somebody wakes, or is to fall asleep.
   std::vector<std::uint32_t> islands;    ///< Parent of each body; the root is its lowest slot.
@@ -145,6 +158,8 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
 
   std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
   std::vector<BodyMass<D>> masses;
+  std::vector<std::uint32_t> met;            ///< Slots that may not be at rest, or have mass; ...
+  bool met_many = false;                     ///< ... not listed: they are a good part of all.
   std::vector<std::uint8_t> inertia_turned;  ///< By body: its mass is of this substep's rotation.
   std::vector<std::uint32_t> used_colors;    ///< Bit set by body slot.
   std::vector<int> color_of;

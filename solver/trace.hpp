@@ -81,4 +81,9 @@ struct StepTrace {
   std::vector<TracedPhase> phases;
 };
 
+/// Whether somebody writes the step down, and so has to see what a step may otherwise pass by.
+inline bool is_written(const StepTrace* trace) {
+  return trace != nullptr && trace->listener == nullptr;
+}
+
 }  // namespace cycloid::solver

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/active_bodies.hpp"
 #include "solver/state.hpp"
 
 namespace cycloid::solver {
@@ -7,20 +8,22 @@ namespace cycloid::solver {
 /// A change that a sleeping body could answer to wakes it; its island follows with the next step.
 
 template <int D>
-void wake(Body<D>& body) {
-  body.asleep = 0;
-  body.rest_ticks = 0;
+void wake(WorldState<D>& state, std::uint32_t slot, ActiveBodies& active) {
+  state.bodies[slot].asleep = 0;
+  state.bodies[slot].rest_ticks = 0;
+  active.touch(slot);
 }
 
 template <int D>
-void wake_all(WorldState<D>& state) {
-  for (Body<D>& body : state.bodies) wake(body);
+void wake_all(WorldState<D>& state, ActiveBodies& active) {
+  active.forget_all();
+  for (std::uint32_t slot = 0; slot < state.bodies.size(); ++slot) wake(state, slot, active);
 }
 
 template <int D>
-void wake_both(WorldState<D>& state, const Joint<D>& joint) {
-  wake(state.bodies[joint.body_a]);
-  wake(state.bodies[joint.body_b]);
+void wake_both(WorldState<D>& state, const Joint<D>& joint, ActiveBodies& active) {
+  wake(state, joint.body_a, active);
+  wake(state, joint.body_b, active);
 }
 
 }  // namespace cycloid::solver

@@ -123,10 +123,18 @@ void World<D>::restore(const WorldState<D>& from) {
   const bool statics_stay = kept_->pair_cache.statics_are_known && statics_are_same(state_, from);
   state_ = from;
   kept_->pair_cache.forget_all();
+  kept_->active_bodies.forget_all();
+  kept_->active_contacts.is_known = false;
   kept_->pair_cache.statics_are_known = statics_stay;
   events_.clear();
   ended_.clear();
   statistics_ = {};
+}
+
+template <int D>
+Body<D>& World<D>::touched(BodyId id) {
+  kept_->active_bodies.touch(id.index);
+  return state_.bodies[id.index];
 }
 
 template <int D>

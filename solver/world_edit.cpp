@@ -124,8 +124,9 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
   });
   state_.bodies[index] = body;
   // A static body may be put where others sleep, and neither would look for the other.
-  if (body.inverse_mass == 0.0f) wake_all(state_);
+  if (body.inverse_mass == 0.0f) wake_all(state_, kept_->active_bodies);
   note_change(state_, body, kept_->pair_cache);
+  kept_->active_bodies.touch(index);
   return BodyId{index, body.generation};
 }
 
@@ -147,11 +148,13 @@ Error World<D>::destroy_body(BodyId id) {
   };
   for (const Contact<D>& contact : state_.contacts) {
     if (!is_of_body(contact)) continue;
-    wake(state_.bodies[state_.shapes[contact.shape_a].body]);
-    wake(state_.bodies[state_.shapes[contact.shape_b].body]);
+    wake(state_, state_.shapes[contact.shape_a].body, kept_->active_bodies);
+    wake(state_, state_.shapes[contact.shape_b].body, kept_->active_bodies);
     if (contact.touching != 0) ended_.push_back(contact_event(state_, contact, false));
   }
   std::erase_if(state_.contacts, is_of_body);
+  kept_->active_contacts.is_known = false;
+  kept_->active_bodies.touch(id.index);
   note_change(state_, state_.bodies[id.index], kept_->pair_cache);
   state_.shapes.edit([&](std::vector<Shape<D>>& shapes) {
     for (std::uint32_t s = state_.bodies[id.index].first_shape; s != kNone;) {
@@ -262,7 +265,7 @@ Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
   take_rest_values(state_, joint);
   state_.joints[index] = joint;
   note_joint(state_, joint, kept_->pair_cache);
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   return JointId{index, joint.generation};
 }
 
@@ -271,7 +274,7 @@ Error World<D>::destroy_joint(JointId id) {
   if (const Error error = check(id); !error.ok()) return error;
   const Joint<D>& joint = state_.joints[id.index];
   note_joint(state_, joint, kept_->pair_cache);
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   state_.joints[id.index] = Joint<D>{};
   state_.joints[id.index].generation = id.generation + 1;
   state_.free_joints.push_back(id.index);

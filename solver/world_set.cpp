@@ -21,7 +21,7 @@ static bool add_within(Vec<N>& sum, const Vec<N>& change, float bound) {
 template <int D>
 Error World<D>::apply_force(BodyId id, const Vec<D>& force_n) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = state_.bodies[id.index];
+  Body<D>& body = touched(id);
   const Vec<D> answered = body.inverse_mass == 0.0f ? Vec<D>::zero() : force_n;
   if (!within(force_n, kForceMax) || !add_within(body.force, answered, kForceMax))
     return invalid("force_n");
@@ -31,7 +31,7 @@ Error World<D>::apply_force(BodyId id, const Vec<D>& force_n) {
 template <int D>
 Error World<D>::apply_torque(BodyId id, const Spin<D>& torque_n_m) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = state_.bodies[id.index];
+  Body<D>& body = touched(id);
   const Spin<D> answered = body.inverse_mass == 0.0f ? Spin<D>::zero() : torque_n_m;
   if (!within(torque_n_m, kForceMax) || !add_within(body.torque, answered, kForceMax))
     return invalid("torque_n_m");
@@ -41,7 +41,7 @@ Error World<D>::apply_torque(BodyId id, const Spin<D>& torque_n_m) {
 template <int D>
 Error World<D>::apply_impulse(BodyId id, const Vec<D>& impulse_n_s) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = state_.bodies[id.index];
+  Body<D>& body = touched(id);
   if (!within(impulse_n_s, kForceMax)) return invalid("impulse_n_s");
   if (!add_within(body.velocity, body.inverse_mass * impulse_n_s, kSpeedMax))
     return invalid("impulse_n_s");
@@ -51,7 +51,7 @@ Error World<D>::apply_impulse(BodyId id, const Vec<D>& impulse_n_s) {
 template <int D>
 Error World<D>::apply_angular_impulse(BodyId id, const Spin<D>& impulse_n_m_s) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = state_.bodies[id.index];
+  Body<D>& body = touched(id);
   if (!within(impulse_n_m_s, kForceMax)) return invalid("impulse_n_m_s");
   const Inertia<D> inverse = world_inertia(body.inverse_inertia, body.rotation);
   if (!add_within(body.spin, inverse * impulse_n_m_s, kSpinMax)) return invalid("impulse_n_m_s");
@@ -61,7 +61,7 @@ Error World<D>::apply_angular_impulse(BodyId id, const Spin<D>& impulse_n_m_s) {
 template <int D>
 Error World<D>::set_velocity(BodyId id, const Vec<D>& velocity, const Spin<D>& spin) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = state_.bodies[id.index];
+  Body<D>& body = touched(id);
   if (!within(velocity, kSpeedMax)) return invalid("velocity");
   if (!within(spin, kSpinMax)) return invalid("spin");
   if (body.kind == BodyKind::kStatic) return invalid("body");
@@ -80,7 +80,7 @@ Error World<D>::set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& r
   body.position = position + rotate(body.rotation, body.local_center);
   note_move(body, kept_->pair_cache);
   // Nobody looks for the pairs of two bodies that rest, so what may touch it now has to look.
-  wake_all(state_);
+  wake_all(state_, kept_->active_bodies);
   return {};
 }
 
@@ -88,7 +88,7 @@ template <int D>
 Error World<D>::set_gravity(const Vec<D>& gravity) {
   if (!within(gravity, 1.0e4f)) return invalid("gravity");
   state_.header.gravity = gravity;
-  wake_all(state_);
+  wake_all(state_, kept_->active_bodies);
   return {};
 }
 
@@ -97,7 +97,7 @@ Error World<D>::set_gravity_scale(BodyId id, float scale) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(scale, -1.0e3f, 1.0e3f)) return invalid("scale");
   state_.bodies[id.index].gravity_scale = scale;
-  wake(state_.bodies[id.index]);
+  wake(state_, id.index, kept_->active_bodies);
   return {};
 }
 
@@ -122,7 +122,7 @@ Error World<D>::set_mass(BodyId id, float mass_kg) {
   body.inverse_mass = 1.0f / mass_kg;
   for (float& moment : body.inertia.m) moment *= scale;
   for (float& moment : body.inverse_inertia.m) moment *= 1.0f / scale;
-  wake(body);
+  wake(state_, id.index, kept_->active_bodies);
   return {};
 }
 
@@ -131,7 +131,7 @@ Error World<D>::set_material(std::uint32_t material, const Material& values) {
   if (material >= state_.materials.size()) return invalid("material");
   if (const Error error = validate(values, static_cast<int>(material)); !error.ok()) return error;
   state_.materials[material] = values;
-  wake_all(state_);
+  wake_all(state_, kept_->active_bodies);
   return {};
 }
 
@@ -142,7 +142,7 @@ Error World<D>::set_filter(BodyId id, std::uint32_t shape, const Filter& filter)
     if (state_.shapes[s].ordinal == shape) {
       state_.shapes.edit([&](std::vector<Shape<D>>& shapes) { shapes[s].filter = filter; });
       note_change(state_, state_.bodies[id.index], kept_->pair_cache);
-      wake_all(state_);
+      wake_all(state_, kept_->active_bodies);
       return {};
     }
   return invalid("shape");
@@ -163,7 +163,7 @@ Error World<D>::set_motor(JointId id, bool enabled, float speed, float max) {
   const MotorKind motor = enabled ? MotorKind::kSpeed : MotorKind::kOff;
   // Controls say this in every tick; only what changes wakes.
   if (joint.motor == motor && joint.motor_speed == speed && joint.motor_max == max) return {};
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   joint.motor = motor;
   joint.motor_speed = speed;
   joint.motor_max = max;
@@ -179,7 +179,7 @@ Error World<D>::set_target(JointId id, float target, float max) {
   if (!within(max, 0.0f, kForceMax)) return invalid("max");
   if (joint.motor == MotorKind::kPosition && joint.target == target && joint.motor_max == max)
     return {};
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   joint.motor = MotorKind::kPosition;
   joint.target = target;
   joint.motor_max = max;
@@ -193,7 +193,7 @@ Error World<D>::set_steering(JointId id, float angle) {
   if (joint.kind != JointKind::kWheel || Dim<D>::kSpin == 1) return invalid("joint");
   if (!within(angle, -kSteeringMax, kSteeringMax)) return invalid("angle");
   if (joint.steering == angle) return {};
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   joint.steering = angle;
   return {};
 }
@@ -203,7 +203,7 @@ Error World<D>::set_anchor(JointId id, const Vec<D>& anchor_a) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(anchor_a, kSizeMax)) return invalid("anchor_a");
   Joint<D>& joint = state_.joints[id.index];
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   joint.anchor_a = anchor_a - state_.bodies[joint.body_a].local_center;
   return {};
 }
@@ -216,7 +216,7 @@ Error World<D>::set_limits(JointId id, bool enabled, float lower, float upper) {
   const float bound = limit_max(joint.kind);
   if (!within(lower, -bound, bound)) return invalid("lower");
   if (!within(upper, lower, bound)) return invalid("upper");
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   joint.limit_enabled = enabled ? 1 : 0;
   joint.lower = lower;
   joint.upper = upper;
@@ -231,7 +231,7 @@ Error World<D>::set_spring(JointId id, float length, float hertz, float damping_
   if (!within(length, kSizeMin, kSizeMax)) return invalid("length");
   if (!within(hertz, 0.0f, 1.0e5f)) return invalid("hertz");
   if (!within(damping_ratio, 0.0f, 1.0e3f)) return invalid("damping_ratio");
-  wake_both(state_, joint);
+  wake_both(state_, joint, kept_->active_bodies);
   joint.length = length;
   joint.hertz = hertz;
   joint.damping_ratio = damping_ratio;
@@ -266,7 +266,7 @@ Error World<D>::set_tuning(const Tuning& tuning) {
     scale_impulses(static_cast<float>(old.substeps) / static_cast<float>(tuning.substeps), state_);
   old = tuning;
   kept_->pair_cache.forget_all();
-  wake_all(state_);
+  wake_all(state_, kept_->active_bodies);
   return {};
 }
 

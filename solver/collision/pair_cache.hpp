@@ -77,7 +77,8 @@ struct PairCache {
   std::vector<std::uint32_t> seen;     ///< By shape: boxes its last look met.
   std::uint64_t seen_sum = 0;
   BoxSet<D> fat;
-  std::vector<ShapePair> candidates;          ///< Sorted by key.
+  std::vector<ShapePair> candidates;          ///< Sorted by key: those with an active shape.
+  std::vector<ShapePair> dormant;             ///< The others, sorted by key.
   std::vector<std::uint64_t> jointed_bodies;  ///< Sorted pairs that do not collide.
   std::vector<std::uint32_t> forgotten;       ///< Shapes whose box or filter was changed.
   bool is_known = false;                      ///< Otherwise all but the statics is made anew.

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "solver/collision/collide.hpp"
+#include "solver/stages/active_contacts.hpp"
 #include "solver/stages/live_contact.hpp"
 #include "solver/stages/stages.hpp"
 
@@ -56,47 +57,24 @@ static void take_points(const Manifold<D>& manifold, float slop, const Contact<D
   }
 }
 
-template <int D>
-static std::uint64_t key_of(const Contact<D>& contact) {
-  return ShapePair{contact.shape_a, contact.shape_b}.key();
-}
-
-/// Whether neither body of an old contact takes part by itself.
-template <int D>
-static bool rests(const Contact<D>& old, const PairCache<D>& cache) {
-  return (cache.active[old.shape_a] | cache.active[old.shape_b]) == 0;
-}
-
 /// The old contacts from `old` on whose key is below `key`: their pairs have no points, or were not
-/// found. Those of bodies that both do nothing are kept as they are, without a manifold: nobody
-/// looked for their pairs, and nothing has moved. There may be very many, so they are copied at
-/// once.
+/// found.
 template <int D>
-static void pass_old(const WorldState<D>& state, const PairCache<D>& cache, std::uint64_t key,
-                     std::uint32_t& old, ContactList<D>& list) {
-  const auto count = static_cast<std::uint32_t>(state.contacts.size());
-  const auto is_passed = [&] { return old < count && key_of(state.contacts[old]) < key; };
-  while (is_passed()) {
-    const std::uint32_t begin = old;
-    while (is_passed() && rests(state.contacts[old], cache)) ++old;
-    if (begin != old)
-      list.contacts.insert(list.contacts.end(), state.contacts.begin() + begin,
-                           state.contacts.begin() + old);
-    if (!is_passed()) return;
-    if (state.contacts[old].touching != 0) list.ended.push_back(old);
-    ++old;
-  }
+static void pass_old(const OldContacts<D>& contacts, std::uint64_t key, std::uint32_t& old,
+                     ContactList<D>& list) {
+  for (; old < contacts.size() && contacts.key(old) < key; ++old)
+    if (contacts[old].touching != 0) list.ended.push_back(contacts.place(old));
 }
 
 /// Lists the contact of a pair with points. `old` is where to go on among the old contacts.
 template <int D>
-static void add_contact(const WorldState<D>& state, const ShapePair& pair,
-                        const Manifold<D>& manifold, std::uint32_t& old, ContactList<D>& list) {
-  const auto count = static_cast<std::uint32_t>(state.contacts.size());
+static void add_contact(const WorldState<D>& state, const OldContacts<D>& contacts,
+                        const ShapePair& pair, const Manifold<D>& manifold, std::uint32_t& old,
+                        ContactList<D>& list) {
   if (manifold.point_count == 0) return;
   add_live(state, pair, manifold, static_cast<std::uint32_t>(list.contacts.size()), list.live);
-  const bool persists = old < count && key_of(state.contacts[old]) == pair.key();
-  const Contact<D>* before = persists ? &state.contacts[old] : nullptr;
+  const bool persists = old < contacts.size() && contacts.key(old) == pair.key();
+  const Contact<D>* before = persists ? &contacts[old] : nullptr;
   Contact<D>& contact = list.contacts.emplace_back();
   contact.shape_a = pair.shape_a;
   contact.shape_b = pair.shape_b;
@@ -104,7 +82,7 @@ static void add_contact(const WorldState<D>& state, const ShapePair& pair,
   const bool touched = persists && before->touching != 0;
   if (contact.touching != 0 && !touched)
     list.began.push_back(static_cast<std::uint32_t>(list.contacts.size() - 1));
-  if (contact.touching == 0 && touched) list.ended.push_back(old);
+  if (contact.touching == 0 && touched) list.ended.push_back(contacts.place(old));
   if (persists) ++old;
 }
 
@@ -124,13 +102,8 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
                           ContactList<D>& list) {
   const std::vector<ShapePair>& pairs = scratch.pairs;
   const auto key_at = [&](int i) { return pairs[static_cast<std::size_t>(i)].key(); };
-  std::uint32_t old = 0;
-  if (range.begin > 0)
-    old = static_cast<std::uint32_t>(
-        std::lower_bound(
-            state.contacts.begin(), state.contacts.end(), key_at(range.begin),
-            [](const Contact<D>& contact, std::uint64_t key) { return key_of(contact) < key; }) -
-        state.contacts.begin());
+  const OldContacts<D> contacts(state, scratch.active_contacts);
+  std::uint32_t old = range.begin > 0 ? contacts.lower_bound(key_at(range.begin)) : 0;
   list.found.resize(kPairGrain);
   for (int begin = range.begin; begin < range.end; begin += kPairGrain) {
     const int size = std::min(kPairGrain, range.end - begin);
@@ -140,12 +113,12 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
     collider(batch, size, list.found.data());
     for (int i = 0; i < size; ++i) {
       const ShapePair& pair = pairs[static_cast<std::size_t>(begin + i)];
-      pass_old(state, scratch.pair_cache, pair.key(), old, list);
-      add_contact(state, pair, list.found[static_cast<std::size_t>(i)], old, list);
+      pass_old(contacts, pair.key(), old, list);
+      add_contact(state, contacts, pair, list.found[static_cast<std::size_t>(i)], old, list);
     }
   }
   const bool is_last = range.end == static_cast<int>(pairs.size());
-  pass_old(state, scratch.pair_cache, is_last ? ~std::uint64_t{0} : key_at(range.end), old, list);
+  pass_old(contacts, is_last ? ~std::uint64_t{0} : key_at(range.end), old, list);
 }
 
 /// Appends the lists of all chunks to the step's. Which contacts those are, by number, depends on
@@ -182,10 +155,11 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
 /// The contact points of every pair, with last tick's impulses where the same features met, and
 /// which contacts began and ended.
 ///
-/// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes contacts,
-/// which of them are live with their manifolds, began and ended. Contacts are listed in the order
-/// of the pairs, which is that of the shapes' slots, beside the old ones in the same order. One
-/// thread lists them at once; of several each takes chunks of the pairs, whose lists are joined.
+/// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes which of
+/// those rest, the contacts of all others, which of them are live with their manifolds, began and
+/// ended. Contacts are listed in the order of the pairs, which is that of the shapes' slots, beside
+/// the old ones in the same order. One thread lists them at once; of several each takes chunks of
+/// the pairs, whose lists are joined.
 template <int D>
 void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
                    Workers& workers, StepScratch<D>& scratch) {
@@ -193,6 +167,8 @@ void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>
   const Collider<D> collider{state.shapes.data(), state.polyhedra, lanes};
   const int count = static_cast<int>(scratch.pairs.size());
   clear<D>(scratch);
+  list_active_contacts(state, scratch);
+  scratch.contacts_are_all = scratch.active_contacts.are_all;
   if (workers.count() == 1 || count <= kChunk)
     return collide_range<D>(collider, context, state, scratch, {0, count}, scratch);
   const auto chunks = static_cast<std::size_t>((count + kChunk - 1) / kChunk);

@@ -28,12 +28,24 @@ static void list_in_order(int count, bool reverse, Coloring& coloring) {
     coloring.order[static_cast<std::size_t>(i)] = reverse ? count - 1 - i : i;
 }
 
+/// No body of a constraint has a colour yet. The world may have many other bodies, that sleep.
+template <class PairOf>
+static void use_no_color(int count, PairOf&& pair_of, std::vector<std::uint32_t>& used) {
+  constexpr std::size_t kFew = 16;
+  if (used.size() <= kFew * static_cast<std::size_t>(count)) return used.assign(used.size(), 0);
+  for (int i = 0; i < count; ++i) {
+    const BodyPair pair = pair_of(i);
+    used[pair.a] = used[pair.b] = 0;
+  }
+}
+
 /// Gives each constraint, in order, the lowest colour that neither of its moving bodies has yet.
 template <class PairOf>
 static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_t>& used,
                            std::vector<int>& color_of, Coloring& coloring) {
   int size_of[kColorsMax + 1] = {};
   color_of.resize(static_cast<std::size_t>(count));
+  use_no_color(count, pair_of, used);
   for (int i = 0; i < count; ++i) {
     const BodyPair pair = pair_of(i);
     const std::uint32_t taken =
@@ -72,7 +84,8 @@ static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_
 /// history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
-  const auto moves = [&](std::uint32_t body) { return scratch.has_mass[body] != 0; };
+  const std::vector<std::uint8_t>& has_mass = scratch.active_bodies.has_mass;
+  const auto moves = [&](std::uint32_t body) { return has_mass[body] != 0; };
   std::vector<int>& joints = scratch.live_joints;
   joints.clear();
   for (int i = 0; i < static_cast<int>(state.joints.size()); ++i) {
@@ -89,7 +102,7 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
     list_in_order(static_cast<int>(contacts.size()), reverse, scratch.contact_coloring);
     return;
   }
-  scratch.used_colors.assign(state.bodies.size(), 0);
+  scratch.used_colors.resize(state.bodies.size());
   color_in_order(
       static_cast<int>(joints.size()),
       [&](int i) {
@@ -100,7 +113,6 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
       scratch.used_colors, scratch.color_of, scratch.joint_coloring);
   name_slots(joints, scratch.joint_coloring);
 
-  scratch.used_colors.assign(state.bodies.size(), 0);
   color_in_order(
       static_cast<int>(contacts.size()),
       [&](int i) {

@@ -1,6 +1,5 @@
-#include <algorithm>
-
 #include "solver/constraints/joints/unwrap.hpp"
+#include "solver/stages/active_contacts.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/validate.hpp"
 
@@ -37,19 +36,6 @@ Fault find_fault(const WorldState<D>& state, Workers& workers, const StepScratch
     if (field != kFaultNone) return {state.header.tick + 1, {i, state.bodies[i].generation}, field};
   }
   return {};
-}
-
-/// A copy, because the scratch is not the world's own. Grows as a list that is appended to, so that
-/// contacts which come and go do not allocate in each tick.
-template <int D>
-static void take_contacts(const std::vector<Contact<D>>& from, Workers& workers,
-                          std::vector<Contact<D>>& to) {
-  constexpr int kContactGrain = 1024;
-  if (from.size() > to.capacity()) to.reserve(std::max(from.size(), 2 * to.capacity()));
-  to.resize(from.size());
-  workers.parallel_for(static_cast<int>(from.size()), kContactGrain, [&](Range range) {
-    std::copy(from.begin() + range.begin, from.begin() + range.end, to.begin() + range.begin);
-  });
 }
 
 template <int D>
@@ -90,7 +76,7 @@ void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
     joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
                        unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};
   }
-  take_contacts(scratch.contacts, workers, state.contacts);
+  take_contacts(workers, scratch, state);
   ++state.header.tick;
 }
 

@@ -90,8 +90,10 @@ static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
   cache.seen.assign(count, 0);
   cache.seen_sum = 0;
   cache.candidates.clear();
+  cache.dormant.clear();
   cache.forgotten.clear();
   cache.fat.clear();
+  scratch.active_bodies.forget_all();
   list_jointed_bodies(state, cache);
   if (!cache.statics_are_known) list_statics(state, scratch);
   cache.statics_are_known = true;
@@ -120,66 +122,16 @@ static void forget_changed(const WorldState<D>& state, StepScratch<D>& scratch) 
   list_jointed_bodies(state, cache);
 }
 
-/// The boxes of a body that can move, and which of its shapes left their fat ones.
-template <int D>
-static void move_boxes_of(const StepContext<D>& context, const WorldState<D>& state,
-                          const Body<D>& body, std::uint8_t active, PairCache<D>& cache,
-                          std::vector<std::uint32_t>& leaving) {
-  const Pose<D> pose{body.position, body.rotation};
-  const Vec<D> flight = context.tick_s * body.velocity;
-  for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
-    cache.active[s] = active;
-    cache.is_still[s] = active ^ 1;
-    cache.boxes[s] =
-        along(bounds_of(state.shapes[s], pose, context.tuning.speculative_distance), flight);
-    if (!cache.fat.contains(s) || !lies_in(cache.boxes[s], cache.fat.box(s))) leaving.push_back(s);
-  }
-}
-
-/// The box of each shape that can move: widened by the speculative distance and along its body's
-/// flight of a tick, so that what it will hit is among the pairs. Those that left their fat box
-/// will look anew.
-template <int D>
-static void move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
-                       StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
-  const int count = static_cast<int>(state.bodies.size());
-  scratch.active.assign(state.bodies.size(), 0);
-  scratch.has_mass.assign(state.bodies.size(), 0);
-  scratch.leaving.clear();
-  Tally asleep;
-  const auto move = [&](Range range, std::vector<std::uint32_t>& leaving) {
-    std::uint32_t asleep_here = 0;
-    for (int i = range.begin; i < range.end; ++i) {
-      const Body<D>& body = state.bodies[static_cast<std::size_t>(i)];
-      if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
-      const std::uint8_t active = is_active(body) ? 1 : 0;
-      scratch.active[static_cast<std::size_t>(i)] = active;
-      scratch.has_mass[static_cast<std::size_t>(i)] = body.inverse_mass > 0.0f ? 1 : 0;
-      if (active == 0 && body.inverse_mass > 0.0f) ++asleep_here;
-      if (body.first_shape == kNone) continue;
-      if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
-      move_boxes_of(context, state, body, active, cache, leaving);
-    }
-    asleep.add(asleep_here);
-  };
-  list_in_chunks(workers, count, kBodyGrain, scratch.leaving_chunks, scratch.leaving, move);
-  scratch.bodies_asleep = static_cast<std::uint32_t>(asleep.sum());
-  for (const std::uint32_t s : scratch.leaving) {
-    const Body<D>& body = state.bodies[state.shapes[s].body];
-    const Vec<D> flight = context.tick_s * body.velocity;
-    const float ticks =
-        cache.fat.contains(s) ? fat_ticks(cache.seen[s]) : first_fat_ticks(cache.boxes[s], flight);
-    cache.fat.put(s, fattened(cache.boxes[s], flight, ticks));
-    if (cache.looks[s] != 0) continue;
-    cache.looks[s] = 1;
-    scratch.looking.push_back(s);
-  }
-  cache.fat.settle();
-}
-
 static ShapePair ordered(std::uint32_t a, std::uint32_t b) {
   return a < b ? ShapePair{a, b} : ShapePair{b, a};
+}
+
+/// Whether one looks that takes no part: what it finds, and what it found, may be dormant.
+template <int D>
+static bool sleepers_look(const StepScratch<D>& scratch) {
+  for (const std::uint32_t s : scratch.looking)
+    if (scratch.pair_cache.active[s] == 0) return true;
+  return false;
 }
 
 /// The candidates of one shape: half-spaces, static shapes, and those that can move. Of two that
@@ -242,6 +194,7 @@ static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScra
   cache.fat.clear();
   scratch.looking.clear();
   cache.candidates.clear();
+  cache.dormant.clear();
   cache.seen_sum = 0;
   for (const Body<D>& body : state.bodies) {
     if (body.kind == BodyKind::kFree || body.kind == BodyKind::kStatic) continue;
@@ -279,6 +232,35 @@ static void merge_candidates(StepScratch<D>& scratch) {
   scratch.looking.clear();
 }
 
+static bool is_below(const ShapePair& one, const ShapePair& other) {
+  return one.key() < other.key();
+}
+
+/// All candidates become one list again, where dormant ones may be so no longer.
+template <int D>
+static void wake_candidates(StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
+  if (cache.dormant.empty()) return;
+  scratch.sorted_pairs.resize(cache.candidates.size() + cache.dormant.size());
+  std::merge(cache.candidates.begin(), cache.candidates.end(), cache.dormant.begin(),
+             cache.dormant.end(), scratch.sorted_pairs.begin(), is_below);
+  cache.candidates.assign(scratch.sorted_pairs.begin(), scratch.sorted_pairs.end());
+  cache.dormant.clear();
+}
+
+/// Puts those aside of which neither shape takes part. @pre none is put aside.
+template <int D>
+static void lay_candidates_to_rest(PairCache<D>& cache) {
+  std::size_t kept = 0;
+  for (const ShapePair& pair : cache.candidates) {
+    if ((cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0)
+      cache.candidates[kept++] = pair;
+    else
+      cache.dormant.push_back(pair);
+  }
+  cache.candidates.resize(kept);
+}
+
 /// The candidates whose boxes overlap now and of which one takes part.
 template <int D>
 static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
@@ -286,8 +268,7 @@ static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
   const PairCache<D>& cache = scratch.pair_cache;
   scratch.pairs.clear();
   const auto meets = [&](const ShapePair& pair) {
-    return (cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0 &&
-           overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]);
+    return overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]);
   };
   const auto list = [&](Range range, std::vector<ShapePair>& pairs) {
     append_if(cache.candidates, range, pairs, meets);
@@ -299,8 +280,8 @@ static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
 /// Every pair of shapes whose boxes overlap and that may touch; those of bodies that can move are
 /// widened by the speculative distance and a tick's flight.
 ///
-/// Reads shapes, bodies and joints; writes the tree of static shapes, the pair cache, who is
-/// active and who has mass, and pairs.
+/// Reads shapes, joints, and the bodies that were awake in the tick before or were touched since;
+/// writes the tree of static shapes, the pair cache, who is active and who has mass, and pairs.
 /// Pairs are those of the boxes of this tick in the order of shape slots, so neither threads nor
 /// what the cache holds show in the result.
 /// @returns false, and no pairs, where there are far more than `limits.contacts`.
@@ -314,7 +295,10 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
     start_anew(state, scratch);
   else if (!cache.forgotten.empty())
     forget_changed(state, scratch);
-  move_boxes(context, state, workers, scratch);
+  const bool flips = move_boxes(context, state, workers, scratch);
+  if (flips) scratch.active_contacts.is_known = false;
+  const bool sorts_anew = flips || sleepers_look(scratch);
+  if (sorts_anew) wake_candidates(scratch);
   if (!scratch.looking.empty()) {
     // Each pair of boxes that overlap was seen by one of the two at least. So with this bound a
     // tick that is within it is also within the bound of a crowd.
@@ -325,6 +309,7 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
       return false;
     merge_candidates(scratch);
   }
+  if (sorts_anew) lay_candidates_to_rest(cache);
   list_pairs(workers, scratch);
   return true;
 }

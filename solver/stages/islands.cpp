@@ -1,6 +1,7 @@
 #include <cstring>
 
 #include "solver/collision/collide.hpp"
+#include "solver/stages/active_contacts.hpp"
 #include "solver/stages/live_contact.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trace.hpp"
@@ -24,11 +25,12 @@ static bool drives(const Joint<D>& joint) {
   return runs || (joint.motor == MotorKind::kPosition && joint.drive_amplitude != 0.0f);
 }
 
-/// Joins the moving bodies of every contact and joint. What a driven joint or a moving kinematic
-/// body holds on to stays awake.
+/// Joins the moving bodies of the tick's contacts and of every joint. What a driven joint or a
+/// moving kinematic body holds on to stays awake. Without the contacts that rest, islands of
+/// sleepers are not whole.
 template <int D>
-static void find_islands(const WorldState<D>& state, const std::vector<Contact<D>>& contacts,
-                         StepScratch<D>& scratch) {
+static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
+  const std::vector<std::uint8_t>& active = scratch.active_bodies.active;
   std::vector<std::uint32_t>& parent = scratch.islands;
   parent.resize(state.bodies.size());
   scratch.kept_awake.assign(state.bodies.size(), 0);
@@ -37,11 +39,10 @@ static void find_islands(const WorldState<D>& state, const std::vector<Contact<D
     const bool a_moves = state.bodies[a].inverse_mass > 0.0f;
     const bool b_moves = state.bodies[b].inverse_mass > 0.0f;
     if (a_moves && b_moves) join(parent, a, b);
-    const bool pushed =
-        (!a_moves && scratch.active[a] != 0) || (!b_moves && scratch.active[b] != 0);
+    const bool pushed = (!a_moves && active[a] != 0) || (!b_moves && active[b] != 0);
     if (keep || pushed) scratch.kept_awake[a_moves ? a : b] = 1;
   };
-  for (const Contact<D>& contact : contacts)
+  for (const Contact<D>& contact : scratch.contacts)
     link(state.shapes[contact.shape_a].body, state.shapes[contact.shape_b].body, false);
   for (const Joint<D>& joint : state.joints)
     if (joint.kind != JointKind::kFree) link(joint.body_a, joint.body_b, drives(joint));
@@ -52,19 +53,19 @@ static void find_islands(const WorldState<D>& state, const std::vector<Contact<D
 template <int D>
 static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scratch) {
   if (scratch.bodies_asleep == 0) return false;
+  const std::vector<std::uint8_t>& active = scratch.active_bodies.active;
   const auto sleeps = [&](std::uint32_t body) {
-    return scratch.active[body] == 0 && state.bodies[body].inverse_mass > 0.0f;
+    return active[body] == 0 && state.bodies[body].inverse_mass > 0.0f;
   };
   for (const LiveContact<D>& live : scratch.live) {  // Of all others both bodies do nothing.
     const std::uint32_t a = live.body_a;
     const std::uint32_t b = live.body_b;
-    if (scratch.active[a] == scratch.active[b]) continue;
+    if (active[a] == active[b]) continue;
     if (sleeps(a) || sleeps(b)) return true;
   }
   for (const Joint<D>& joint : state.joints) {
     if (joint.kind == JointKind::kFree) continue;
-    const bool wakes =
-        drives(joint) || scratch.active[joint.body_a] != scratch.active[joint.body_b];
+    const bool wakes = drives(joint) || active[joint.body_a] != active[joint.body_b];
     if (wakes && (sleeps(joint.body_a) || sleeps(joint.body_b))) return true;
   }
   return false;
@@ -118,16 +119,18 @@ static void list_awake(StepScratch<D>& scratch) {
 template <int D>
 static bool wake_by_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
   const std::size_t count = state.bodies.size();
-  find_islands(state, scratch.contacts, scratch);
+  const std::vector<std::uint8_t>& active = scratch.active_bodies.active;
+  take_in_resting(state, scratch);
+  find_islands(state, scratch);
   scratch.island_flags.assign(count, 0);
   for (std::uint32_t i = 0; i < count; ++i)
-    if (scratch.active[i] != 0 || scratch.kept_awake[i] != 0)
+    if (active[i] != 0 || scratch.kept_awake[i] != 0)
       scratch.island_flags[root_of(scratch.islands, i)] = 1;
   bool woke = false;
   for (std::uint32_t i = 0; i < count; ++i) {
     if (!(state.bodies[i].inverse_mass > 0.0f)) continue;
     scratch.awake[i] = scratch.island_flags[root_of(scratch.islands, i)];
-    if (scratch.awake[i] == 0 || scratch.active[i] != 0) continue;
+    if (scratch.awake[i] == 0 || active[i] != 0) continue;
     woke = true;
     --scratch.bodies_asleep;
   }
@@ -138,17 +141,20 @@ static bool wake_by_islands(const WorldState<D>& state, StepScratch<D>& scratch)
 /// tick: a sleeping island wakes as a whole when one that moves touches it. Where none does, who is
 /// awake is who is active, and islands are not looked for; unless somebody writes the step down.
 ///
-/// Reads contacts, joints, bodies and who is active; writes islands, awake, kept_awake, and the
-/// live contacts, where some woke. Serial; a function of ids alone.
+/// Reads contacts, joints, bodies and who is active; writes islands, awake, kept_awake, and, where
+/// some woke, the contacts with those that rested, and which are live. Serial; a function of ids
+/// alone.
 template <int D>
 void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch) {
-  scratch.awake.assign(scratch.active.begin(), scratch.active.end());
+  const ActiveBodies& active = scratch.active_bodies;
+  scratch.awake.assign(active.active.begin(), active.active.end());
   scratch.awake.push_back(0);
   scratch.islands_are_known = false;
-  const bool is_written = scratch.trace != nullptr && scratch.trace->listener == nullptr;
-  if ((is_written || wakes_somebody(state, scratch)) && wake_by_islands(state, scratch))
-    collide_woken(context, state, scratch);
+  scratch.awake_bodies.assign(active.slots.begin(), active.slots.end());
+  if (!is_written(scratch.trace) && !wakes_somebody(state, scratch)) return;
+  if (!wake_by_islands(state, scratch)) return;
+  collide_woken(context, state, scratch);
   list_awake(scratch);
 }
 
@@ -166,13 +172,15 @@ static bool rests_long(const StepContext<D>& context, Body<D>& body) {
 /// velocities become zero, and until it wakes none of its state changes.
 ///
 /// Reads motions, contacts, joints and awake; writes rest_ticks, asleep, islands where somebody has
-/// rested for long, and, of bodies that fall asleep, velocities. Serial, in slot order.
+/// rested for long, of bodies that fall asleep velocities, and who is asked in the next tick
+/// whether it takes part: nobody else can have changed. Serial, in slot order.
 template <int D>
 void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state) {
   const auto takes_part = [&](std::uint32_t i) { return state.bodies[i].inverse_mass != 0.0f; };
   std::vector<std::uint8_t>& restless = scratch.island_flags;
   restless.resize(state.bodies.size());
   bool any_rests = false;
+  scratch.active_bodies.ask_next(scratch.awake_bodies);
   for (const std::uint32_t i : scratch.awake_bodies) {
     if (!takes_part(i)) continue;
     const bool rests = rests_long(context, state.bodies[i]);
@@ -180,9 +188,7 @@ void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldS
     any_rests = any_rests || rests;
   }
   if (!any_rests || !(context.tuning.sleep_s > 0.0f)) return;
-  if (!scratch.islands_are_known) find_islands(state, state.contacts, scratch);
-  for (std::uint32_t i = 0; i < state.bodies.size(); ++i)
-    if (scratch.awake[i] == 0 || !takes_part(i)) restless[i] = 0;
+  if (!scratch.islands_are_known) find_islands(state, scratch);
   for (const std::uint32_t i : scratch.awake_bodies)
     if (takes_part(i) && (restless[i] != 0 || scratch.kept_awake[i] != 0))
       restless[root_of(scratch.islands, i)] = 1;

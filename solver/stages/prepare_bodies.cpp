@@ -28,6 +28,53 @@ static Acceleration<D> acceleration_of(const StepContext<D>& context, const Body
   return of;
 }
 
+/// Which bodies constraints of this tick may write to: who is awake, what touches them or is
+/// jointed to them, and the resting one of unused lanes. Where those are a good part of all, to
+/// list them would cost more than to put all to rest.
+template <int D>
+static void list_met(const WorldState<D>& state, StepScratch<D>& scratch) {
+  const std::size_t count = state.bodies.size();
+  const std::size_t pairs = scratch.live.size() + scratch.live_joints.size();
+  std::vector<std::uint32_t>& met = scratch.met;
+  met.clear();
+  scratch.met_many = 4 * (scratch.awake_bodies.size() + 2 * pairs) > count;
+  if (scratch.met_many) return;
+  met.assign(scratch.awake_bodies.begin(), scratch.awake_bodies.end());
+  for (const LiveContact<D>& live : scratch.live) {
+    met.push_back(live.body_a);
+    met.push_back(live.body_b);
+  }
+  for (const int slot : scratch.live_joints) {
+    const Joint<D>& joint = state.joints[static_cast<std::size_t>(slot)];
+    met.push_back(joint.body_a);
+    met.push_back(joint.body_b);
+  }
+  met.push_back(static_cast<std::uint32_t>(count));
+}
+
+/// All bodies at rest and without mass, as they are for those that are not awake. The step before,
+/// maybe another world's, left all but those it met so: a world may be full of sleepers.
+template <int D>
+static void rest_all(const WorldState<D>& state, StepScratch<D>& scratch) {
+  Motion<D> resting{};
+  resting.delta_rotation = identity_rotation<D>();
+  const std::size_t count = state.bodies.size() + 1;
+  if (scratch.met_many) {
+    scratch.motions.assign(count, resting);
+    scratch.masses.assign(count, BodyMass<D>{});
+    scratch.inertia_turned.assign(count, 0);
+    return;
+  }
+  for (const std::uint32_t slot : scratch.met) {
+    scratch.motions[slot] = resting;
+    scratch.masses[slot] = {};
+    scratch.inertia_turned[slot] = 0;
+  }
+  scratch.motions.resize(count, resting);
+  scratch.masses.resize(count, BodyMass<D>{});
+  scratch.inertia_turned.resize(count, 0);
+}
+
 /// I^-1 in the world frame = R I_body^-1 R^T, and the motion at the start of the tick. A body that
 /// is not awake is at rest, and none that is awake can push it: to its neighbours it has no mass.
 ///
@@ -37,12 +84,8 @@ static Acceleration<D> acceleration_of(const StepContext<D>& context, const Body
 template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch) {
-  const std::size_t count = state.bodies.size();
-  Motion<D> resting{};
-  resting.delta_rotation = identity_rotation<D>();
-  scratch.motions.assign(count + 1, resting);
-  scratch.masses.assign(count + 1, BodyMass<D>{});
-  scratch.inertia_turned.assign(count + 1, 0);
+  rest_all(state, scratch);
+  list_met(state, scratch);
   scratch.accelerations.resize(scratch.awake_bodies.size());
   constexpr float kFar = 1.0f;  // m in a tick.
   const float far_speed = kFar / context.tick_s;

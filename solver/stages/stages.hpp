@@ -12,6 +12,9 @@ namespace cycloid::solver {
 /// its comment in stages/*.cpp says, and nothing else; docs/architecture.md has the table.
 
 template <int D>
+bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                StepScratch<D>& scratch);
+template <int D>
 bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch);
 template <int D>

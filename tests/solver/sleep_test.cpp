@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 #include "tests/solver/world_fixture.hpp"
@@ -185,6 +186,63 @@ TEST(Sleep, ARestoredSleeperWakesToTheSameBits) {
     step(other, 1);
     ASSERT_EQ(world.digest(), other.digest()) << tick;
   }
+}
+
+/// Stacks in a row that have fallen asleep, and balls that roll and hop between some of them.
+static World<2> field_of_stacks(int stacks, int balls) {
+  World<2> world = make_world(with_gravity<2>());
+  add_ground<2>(world, up<2>());
+  for (int i = 0; i < stacks; ++i) add_stack(world, 4, 4.0f * static_cast<float>(i));
+  step(world, 300);
+  EXPECT_EQ(world.statistics().asleep, 4u * static_cast<std::uint32_t>(stacks));
+  for (int i = 0; i < balls; ++i)
+    add_at<2>(world, {{4.0f * static_cast<float>(i) + 2.0f, 1.0f}}, ball<2>(0.4f));
+  return world;
+}
+
+// One world goes on with what it has kept about who sleeps; the other is restored before each tick,
+// so it looks at all. Contacts come and end in nearly every tick, stacks fall, sleep and wake, and
+// calls come between.
+TEST(Sleep, WhatIsKeptAboutManySleepersShowsNowhere) {
+  constexpr int kStacks = 150;
+  constexpr int kBalls = 20;
+  World<2> keeps = field_of_stacks(kStacks, kBalls);
+  World<2> forgets = field_of_stacks(kStacks, kBalls);
+  ASSERT_TRUE(keeps.set_workers(2).ok());
+  const auto first_ball = static_cast<std::uint32_t>(1 + 4 * kStacks);
+  std::set<std::uint32_t> counts;
+  std::size_t events = 0;
+  for (std::uint32_t tick = 0; tick < 600; ++tick) {
+    const WorldState<2> saved = forgets.state();
+    forgets.restore(saved);
+    for (World<2>* world : {&keeps, &forgets}) {
+      const BodyId pushed{first_ball + tick / 8 % kBalls, 0};
+      const float push = tick % 16 < 8 ? 1.5f : -1.0f;
+      if (tick % 8 == 0) {
+        ASSERT_TRUE(world->apply_impulse(pushed, {{push, 1.0f}}).ok());
+      }
+      const BodyId poked{1 + tick * 7 % (4 * kStacks), 0};
+      if (tick % 50 == 49) {
+        ASSERT_TRUE(
+            world->destroy_body({poked.index, world->state().bodies[poked.index].generation}).ok());
+        add_at<2>(*world, {{4.0f * static_cast<float>(tick % kStacks), 6.0f}}, box(0.3f, 0.3f));
+      }
+    }
+    step(keeps, 1);
+    step(forgets, 1);
+    ASSERT_EQ(keeps.digest(), forgets.digest()) << "tick " << tick;
+    ASSERT_EQ(keeps.statistics().asleep, forgets.statistics().asleep) << "tick " << tick;
+    ASSERT_EQ(keeps.statistics().pairs, forgets.statistics().pairs) << "tick " << tick;
+    const auto kept = keeps.contact_events();
+    const auto found = forgets.contact_events();
+    ASSERT_TRUE(std::equal(kept.begin(), kept.end(), found.begin(), found.end()))
+        << "tick " << tick;
+    counts.insert(keeps.statistics().asleep);
+    events += kept.size();
+  }
+  EXPECT_GT(counts.size(), 20u);
+  EXPECT_GT(*counts.begin(), 400u);
+  EXPECT_GT(events, 250u);
 }
 
 // Boxes that overlap under a load rock on one another by less than a thousandth; whatever that

@@ -1,0 +1,133 @@
+#include "solver/stages/in_chunks.hpp"
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// The boxes of a body that can move, and which of its shapes left their fat ones. @returns whether
+/// it took part in the tick before and does not now, or the other way round.
+template <int D>
+static bool move_boxes_of(const StepContext<D>& context, const WorldState<D>& state,
+                          const Body<D>& body, std::uint8_t active, PairCache<D>& cache,
+                          std::vector<std::uint32_t>& leaving) {
+  const Pose<D> pose{body.position, body.rotation};
+  const Vec<D> flight = context.tick_s * body.velocity;
+  bool flips = false;
+  for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
+    flips = flips || cache.active[s] != active;
+    cache.active[s] = active;
+    cache.is_still[s] = active ^ 1;
+    cache.boxes[s] =
+        along(bounds_of(state.shapes[s], pose, context.tuning.speculative_distance), flight);
+    if (!cache.fat.contains(s) || !lies_in(cache.boxes[s], cache.fat.box(s))) leaving.push_back(s);
+  }
+  return flips;
+}
+
+/// All bodies are to be asked whether they take part, where that is not known of the others.
+template <int D>
+static void list_to_ask(const WorldState<D>& state, ActiveBodies& bodies) {
+  const std::size_t count = state.bodies.size();
+  if (bodies.is_known) {
+    bodies.active.resize(count, 0);
+    bodies.has_mass.resize(count, 0);
+    return bodies.sort();
+  }
+  bodies.active.assign(count, 0);
+  bodies.has_mass.assign(count, 0);
+  bodies.asleep = 0;
+  bodies.to_ask.resize(count);
+  for (std::uint32_t i = 0; i < count; ++i) bodies.to_ask[i] = i;
+  bodies.slots.clear();
+  bodies.is_known = bodies.is_sorted = true;
+}
+
+/// What `ask_bodies` counts, over all threads.
+struct AskedTally {
+  Tally asleep;
+  Tally asleep_before;
+  Tally changes;  ///< Bodies that took part and do not now, or the other way round.
+  Tally flips;    ///< Ranges with a shape that does.
+};
+
+/// Asks a range of those that are to be asked, and moves the boxes of who takes part.
+template <int D>
+static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state, Range range,
+                       StepScratch<D>& scratch, AskedTally& tally,
+                       std::vector<std::uint32_t>& leaving) {
+  PairCache<D>& cache = scratch.pair_cache;
+  ActiveBodies& bodies = scratch.active_bodies;
+  std::uint32_t asleep = 0;
+  std::uint32_t asleep_before = 0;
+  std::uint32_t changes = 0;
+  bool flips = false;
+  for (int i = range.begin; i < range.end; ++i) {
+    const std::uint32_t slot = bodies.to_ask[static_cast<std::size_t>(i)];
+    const Body<D>& body = state.bodies[slot];
+    const bool moves = body.kind != BodyKind::kFree && body.kind != BodyKind::kStatic;
+    const std::uint8_t active = moves && is_active(body) ? 1 : 0;
+    const std::uint8_t has_mass = moves && body.inverse_mass > 0.0f ? 1 : 0;
+    asleep_before += bodies.has_mass[slot] & ~bodies.active[slot];
+    asleep += has_mass & ~active;
+    changes += bodies.active[slot] ^ active;
+    bodies.active[slot] = active;
+    bodies.has_mass[slot] = has_mass;
+    if (!moves || body.first_shape == kNone) continue;
+    if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
+    flips = move_boxes_of(context, state, body, active, cache, leaving) || flips;
+  }
+  tally.asleep.add(asleep);
+  tally.asleep_before.add(asleep_before);
+  tally.changes.add(changes);
+  if (flips) tally.flips.add(1);
+}
+
+/// Those of whom it was asked are all that may take part.
+static void list_active(ActiveBodies& bodies) {
+  bodies.slots.clear();
+  for (const std::uint32_t slot : bodies.to_ask)
+    if (bodies.active[slot] != 0) bodies.slots.push_back(slot);
+}
+
+/// The box of each shape that can move: widened by the speculative distance and along its body's
+/// flight of a tick, so that what it will hit is among the pairs. Those that left their fat box
+/// will look anew. @returns whether a shape takes part that did not in the tick before, or the
+/// other way round.
+///
+/// Reads the bodies that were awake in the tick before or were touched since, and their shapes;
+/// writes who is active and who has mass, boxes, fat boxes and who looks. Each body its own; who
+/// leaves a fat box is listed in slot order.
+template <int D>
+bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                StepScratch<D>& scratch) {
+  PairCache<D>& cache = scratch.pair_cache;
+  ActiveBodies& bodies = scratch.active_bodies;
+  scratch.leaving.clear();
+  AskedTally tally;
+  list_to_ask(state, bodies);
+  list_in_chunks(workers, static_cast<int>(bodies.to_ask.size()), kBodyGrain,
+                 scratch.leaving_chunks, scratch.leaving,
+                 [&](Range range, std::vector<std::uint32_t>& leaving) {
+                   ask_bodies(context, state, range, scratch, tally, leaving);
+                 });
+  bodies.asleep += static_cast<std::uint32_t>(tally.asleep.sum());
+  bodies.asleep -= static_cast<std::uint32_t>(tally.asleep_before.sum());
+  scratch.bodies_asleep = bodies.asleep;
+  if (tally.changes.sum() > 0) list_active(bodies);
+  for (const std::uint32_t s : scratch.leaving) {
+    const Body<D>& body = state.bodies[state.shapes[s].body];
+    const Vec<D> flight = context.tick_s * body.velocity;
+    const float ticks =
+        cache.fat.contains(s) ? fat_ticks(cache.seen[s]) : first_fat_ticks(cache.boxes[s], flight);
+    cache.fat.put(s, fattened(cache.boxes[s], flight, ticks));
+    if (cache.looks[s] != 0) continue;
+    cache.looks[s] = 1;
+    scratch.looking.push_back(s);
+  }
+  cache.fat.settle();
+  return tally.flips.sum() > 0;
+}
+
+template bool move_boxes(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);
+template bool move_boxes(const StepContext<3>&, const WorldState<3>&, Workers&, StepScratch<3>&);
+
+}  // namespace cycloid::solver
