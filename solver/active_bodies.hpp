@@ -39,7 +39,7 @@ struct ActiveBodies {
   void sort() {
     if (is_sorted) return;
     is_sorted = true;
-    // Total order: equal integers are one and the same.
+    // Total order: equal integers are one and the same, and of those one is left.
     std::sort(to_ask.begin(), to_ask.end());
     to_ask.erase(std::unique(to_ask.begin(), to_ask.end()), to_ask.end());
   }
