@@ -73,12 +73,17 @@ RowsFunction<D> find_rows_function(const std::vector<UserRows<D>>& registered,
 }
 
 /// A body that moves so far in a tick that it could pass through something.
-template <int D>
 struct FastBody {
   std::uint32_t slot;
-  BodySweep<D> sweep;
   bool is_pushed = false;  ///< Something behind it moves it on.
   float stop = 1.0f;       ///< The fraction of the tick at which it stops.
+};
+
+/// How what a shape of a fast body may meet is found.
+enum class WayIs : std::uint8_t {
+  kUnknown,   ///< It is of no fast body, or its way is not needed.
+  kListed,    ///< Among pairs or candidates that are listed already.
+  kSearched,  ///< It looks for all of it itself.
 };
 
 /// Which contacts of the state have a body that takes part in the coming tick by itself. A function
@@ -176,11 +181,12 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   IslandSolver<D> islands_solved;
   std::vector<float> tree_wanted;
   std::vector<float> tree_impulses;
-  std::vector<FastBody<D>> fast_bodies;  ///< In slot order.
-  std::vector<std::vector<FastBody<D>>> fast_chunks;
+  std::vector<FastBody> fast_bodies;  ///< In slot order.
+  std::vector<std::vector<FastBody>> fast_chunks;
   std::vector<std::uint32_t> fast_of_shape;  ///< By shape: place in fast_bodies + 1, or 0.
-  std::vector<Bounds<D>> ways;               ///< By shape, of those of fast bodies.
-  std::vector<std::uint32_t> searching;      ///< Shapes whose way leaves their fat box.
+  std::vector<Bounds<D>> ways;               ///< By shape, of those that have one.
+  std::vector<WayIs> way_is;                 ///< By shape.
+  std::vector<std::uint32_t> searching;      ///< Shapes whose way leaves what their lists are of.
   std::vector<ShapePair> meetings;           ///< Which may meet on the way of a fast body.
   std::vector<float> fractions;              ///< Of meetings: of the tick, at which they do.
   ParticleScratch<D> particles;

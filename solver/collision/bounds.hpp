@@ -60,13 +60,15 @@ inline Lanes<4> least_of_four(Lanes<4> a) {
   return min(Lanes<4>(Raw{a.raw[1], a.raw[0], a.raw[3], a.raw[2]}), a);
 }
 
-/// What boxes mostly are in the plane: the four vertices side by side. The same numbers as one
-/// after the other.
-inline Bounds<2> bounds_of_four(const std::array<Vec<2>, 8>& vertices, const Pose<2>& pose) {
+/// What boxes mostly are in the plane: the four vertices side by side, of a triangle the last one
+/// twice. The same numbers as one after the other.
+inline Bounds<2> bounds_of_four(const std::array<Vec<2>, 8>& vertices, bool is_triangle,
+                                const Pose<2>& pose) {
   using Four = Lanes<4>;
   using Raw = Four::Raw;
   const Raw low = Four::load(vertices[0].v).raw;
-  const Raw high = Four::load(vertices[2].v).raw;
+  Raw high = Four::load(vertices[2].v).raw;
+  if (is_triangle) high = Raw{high[0], high[1], high[0], high[1]};
   const Vec<2, Four> r{
       {Four(Raw{low[0], low[2], high[0], high[2]}), Four(Raw{low[1], low[3], high[1], high[3]})}};
   const Vec<2, Four> turn{{Four(pose.rotation[0]), Four(pose.rotation[1])}};
@@ -82,7 +84,8 @@ inline Bounds<2> bounds_of_four(const std::array<Vec<2>, 8>& vertices, const Pos
 template <int D>
 Bounds<D> bounds_of_vertices(const Shape<D>& shape, const Pose<D>& pose) {
   if constexpr (Dim<D>::kSpin == 1)
-    if (shape.vertex_count == 4) return bounds_of_four(shape.vertices, pose);
+    if (shape.vertex_count == 3 || shape.vertex_count == 4)
+      return bounds_of_four(shape.vertices, shape.vertex_count == 3, pose);
   Vec<D> first = pose.position + rotate(pose.rotation, shape.vertices[0]);
   Bounds<D> bounds{first, first};
   for (std::uint32_t v = 1; v < shape.vertex_count; ++v) {

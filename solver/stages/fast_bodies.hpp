@@ -13,6 +13,12 @@ bool winds(const StepContext<D>& context, const Motion<D>& motion) {
   return dot(spun, spun) > kPi * kPi;
 }
 
+/// How far a body turns in the tick, and about what.
+template <int D>
+Spin<D> turn_in(const StepContext<D>& context, const Motion<D>& motion) {
+  return winds(context, motion) ? context.tick_s * motion.spin : turn_of(motion.delta_rotation);
+}
+
 /// A body's way in this tick.
 template <int D>
 BodySweep<D> sweep_of(const StepContext<D>& context, const WorldState<D>& state,
@@ -20,7 +26,7 @@ BodySweep<D> sweep_of(const StepContext<D>& context, const WorldState<D>& state,
   const Motion<D>& motion = scratch.motions[body];
   return {{state.bodies[body].position, state.bodies[body].rotation},
           motion.delta_position,
-          winds(context, motion) ? context.tick_s * motion.spin : turn_of(motion.delta_rotation)};
+          turn_in(context, motion)};
 }
 
 /// The most that a rotation may turn, rad, or more: without a function of trigonometry.

@@ -15,12 +15,14 @@ static bool is_slow(const StepContext<D>& context, const Body<D>& body, const Mo
   return 1.001f * way < 0.5f * body.thickness;
 }
 
-/// Whether it moves so far in a tick that it could pass through something, or over its corner.
+/// Whether it moves so far in a tick that it could pass through something, or over its corner. What
+/// flies that far is asked for no turn.
 template <int D>
-static bool is_fast(const Body<D>& body, const BodySweep<D>& sweep) {
+static bool is_fast(const StepContext<D>& context, const Body<D>& body, const Motion<D>& motion) {
   if (!responds(body.kind) || body.extent == 0.0f) return false;
-  const float way = length(sweep.translation) + body.extent * length(sweep.turn);
-  return way > 0.5f * body.thickness;
+  const float flown = length(motion.delta_position);
+  const float enough = 0.5f * body.thickness;
+  return flown > enough || flown + body.extent * length(turn_in(context, motion)) > enough;
 }
 
 template <int D>
@@ -28,13 +30,13 @@ static void list_fast(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch) {
   const std::vector<std::uint32_t>& awake = scratch.awake_bodies;
   scratch.fast_bodies.clear();
-  const auto list = [&](Range range, std::vector<FastBody<D>>& fast) {
+  const auto list = [&](Range range, std::vector<FastBody>& fast) {
     for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
          ++i) {
       const Body<D>& body = state.bodies[awake[i]];
-      if (is_slow(context, body, scratch.motions[awake[i]])) continue;
-      const BodySweep<D> sweep = sweep_of(context, state, scratch, awake[i]);
-      if (is_fast(body, sweep)) fast.push_back({awake[i], sweep});
+      const Motion<D>& motion = scratch.motions[awake[i]];
+      if (!is_slow(context, body, motion) && is_fast(context, body, motion))
+        fast.push_back({awake[i]});
     }
   };
   list_in_chunks(workers, static_cast<int>(awake.size()), kPairGrain, scratch.fast_chunks,
@@ -97,35 +99,105 @@ static Bounds<D> bounds_of_way(const Shape<D>& shape, const Body<D>& body,
                 bounds_of(shape, pose_at(sweep, 1.0f), margin));
 }
 
-/// Marks the shapes of fast bodies, with the boxes of their ways. Where the candidates of this tick
-/// do not have all that such a box may meet, the shape will search.
+/// Whether the ways of all shapes of a fast body lie in their boxes of this tick, as its motion
+/// tells by itself: it flies no farther than it was going to when the boxes were made, and what it
+/// turns by is within their margin. Says no where that is not certain.
+template <int D>
+static bool stays_in_boxes(const StepContext<D>& context, const Body<D>& body,
+                           const Motion<D>& motion, float target) {
+  // The corners of a hull's bounding box in space are farther from the centre than the hull.
+  constexpr float kCorner = Dim<D>::kSpin == 1 ? 1.0f : 1.75f;
+  constexpr float kRounding = 4.0e-6f;
+  if (winds(context, motion)) return false;
+  const float turn = turn_bound(motion.delta_rotation);
+  const float reach = target + turn * (kCorner + 0.126f * turn) * body.extent;
+  for (int i = 0; i < D; ++i) {
+    const float flight = context.tick_s * body.velocity[i];
+    const float way = motion.delta_position[i];
+    const float rounding =
+        kRounding * (abs(body.position[i]) + body.extent + abs(flight) + abs(way));
+    const float room = context.tuning.speculative_distance - reach - rounding;
+    if (max(way, 0.0f) - max(flight, 0.0f) > room) return false;
+    if (min(flight, 0.0f) - min(way, 0.0f) > room) return false;
+  }
+  return true;
+}
+
+/// Sorts the shapes of fast bodies by where all that they may meet is listed: among the pairs of
+/// this tick where their way lies in their box, else among the candidates where it lies in their
+/// fat box; else they will search.
 template <int D>
 static void mark_ways(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch) {
   const PairCache<D>& cache = scratch.pair_cache;
   scratch.fast_of_shape.assign(state.shapes.size(), 0);
   scratch.ways.resize(state.shapes.size());
+  scratch.way_is.assign(state.shapes.size(), WayIs::kUnknown);
+  scratch.leaving.clear();
   scratch.searching.clear();
   for (std::uint32_t place = 0; place < scratch.fast_bodies.size(); ++place) {
-    const FastBody<D>& fast = scratch.fast_bodies[place];
-    const Body<D>& body = state.bodies[fast.slot];
+    const std::uint32_t slot = scratch.fast_bodies[place].slot;
+    const Body<D>& body = state.bodies[slot];
+    const Motion<D>& motion = scratch.motions[slot];
     const float target = stop_distance(context.tuning, body.thickness);
+    const bool stays = stays_in_boxes(context, body, motion, target);
     for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
       scratch.fast_of_shape[s] = place + 1;
-      scratch.ways[s] = bounds_of_way(state.shapes[s], body, fast.sweep, target);
-      if (cache.active[s] == 0 || !lies_in(scratch.ways[s], cache.fat.box(s)))
+      if (stays && cache.active[s] != 0) continue;
+      scratch.ways[s] =
+          bounds_of_way(state.shapes[s], body, sweep_of(context, state, scratch, slot), target);
+      scratch.way_is[s] = WayIs::kListed;
+      if (cache.active[s] != 0 && lies_in(scratch.ways[s], cache.boxes[s])) continue;
+      if (cache.active[s] != 0 && lies_in(scratch.ways[s], cache.fat.box(s)))
+        scratch.leaving.push_back(s);
+      else
         scratch.searching.push_back(s);
     }
   }
 }
 
+/// The ways of those shapes of fast bodies that are in a pair and have none yet.
+template <int D>
+static void find_ways_of_pairs(const StepContext<D>& context, const WorldState<D>& state,
+                               Workers& workers, StepScratch<D>& scratch) {
+  std::vector<std::uint32_t>& wanted = scratch.looking;
+  wanted.clear();
+  for (const ShapePair& pair : scratch.pairs)
+    for (const std::uint32_t s : {pair.shape_a, pair.shape_b}) {
+      if (scratch.fast_of_shape[s] == 0 || scratch.way_is[s] != WayIs::kUnknown) continue;
+      scratch.way_is[s] = WayIs::kListed;
+      wanted.push_back(s);
+    }
+  workers.parallel_for(static_cast<int>(wanted.size()), kPairGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const std::uint32_t s = wanted[static_cast<std::size_t>(i)];
+      const std::uint32_t slot = state.shapes[s].body;
+      const Body<D>& body = state.bodies[slot];
+      scratch.ways[s] =
+          bounds_of_way(state.shapes[s], body, sweep_of(context, state, scratch, slot),
+                        stop_distance(context.tuning, body.thickness));
+    }
+  });
+}
+
+/// Whether the box of a shape is met on the way of another, of which it is known how it is looked
+/// up.
+template <int D>
+static bool meets(const StepScratch<D>& scratch, WayIs found, std::uint32_t fast,
+                  std::uint32_t other) {
+  return scratch.way_is[fast] == found &&
+         overlaps(scratch.pair_cache.boxes[other], scratch.ways[fast]);
+}
+
+/// The meetings on the way of a shape that searches, but for those that a lower one finds.
 template <int D>
 static void search(const WorldState<D>& state, const StepScratch<D>& scratch, std::uint32_t shape,
                    std::vector<ShapePair>& found) {
   const Bounds<D>& way = scratch.ways[shape];
-  const std::vector<Bounds<D>>& boxes = scratch.pair_cache.boxes;
   const auto meet = [&](std::uint32_t other) {
-    if (overlaps(boxes[other], way) && may_touch(state, scratch, shape, other))
+    if (!meets(scratch, WayIs::kSearched, shape, other)) return;
+    if (other < shape && meets(scratch, WayIs::kSearched, other, shape)) return;
+    if (may_touch(state, scratch, shape, other))
       found.push_back(shape < other ? ShapePair{shape, other} : ShapePair{other, shape});
   };
   for (const std::uint32_t half_space : scratch.unbounded) meet(half_space);
@@ -133,38 +205,54 @@ static void search(const WorldState<D>& state, const StepScratch<D>& scratch, st
   scratch.pair_cache.fat.query(way, meet);
 }
 
+/// Appends the meetings among these pairs that no search finds.
+template <int D>
+static void list_among(const std::vector<ShapePair>& pairs, Workers& workers,
+                       StepScratch<D>& scratch) {
+  constexpr int kGrain = 1024;
+  const auto is_listed = [&](std::uint32_t fast, std::uint32_t other) {
+    return meets(scratch, WayIs::kListed, fast, other) &&
+           !meets(scratch, WayIs::kSearched, other, fast);
+  };
+  const auto list = [&](Range range, std::vector<ShapePair>& found) {
+    append_if(pairs, range, found, [&](const ShapePair& pair) {
+      return is_listed(pair.shape_a, pair.shape_b) || is_listed(pair.shape_b, pair.shape_a);
+    });
+  };
+  list_in_chunks(workers, static_cast<int>(pairs.size()), kGrain, scratch.pair_chunks,
+                 scratch.meetings, list);
+}
+
 /// The pairs of shapes of which one is of a fast body and meets the box of the other on its way.
 ///
-/// Reads motions, bodies, shapes and the boxes and candidates of find_pairs; writes the fast bodies
-/// with their ways and the meetings. Which pairs those are depends on boxes and ways alone: a fat
-/// box holds its candidates wherever it holds the way, so what is cached shows only in the order,
-/// and in a pair that is listed twice, which changes no least fraction.
+/// Reads motions, bodies, shapes and the boxes, pairs and candidates of find_pairs; writes the fast
+/// bodies, ways and the meetings. Which pairs those are depends on boxes and ways alone: a box has
+/// its pairs, and a fat box its candidates, wherever it holds the way; so what is cached shows only
+/// in their order, which changes no least fraction.
 template <int D>
 void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch) {
-  constexpr int kCandidateGrain = 1024;
+  // So many candidates are passed by in the time of one search.
+  constexpr std::size_t kCandidatesPerSearch = 100;
   scratch.meetings.clear();
   list_fast(context, state, workers, scratch);
   if (scratch.fast_bodies.empty()) return;
   mark_ways(context, state, scratch);
   mark_pushed(context, scratch);
-  const PairCache<D>& cache = scratch.pair_cache;
-  const auto meets = [&](std::uint32_t fast, std::uint32_t other) {
-    return scratch.fast_of_shape[fast] != 0 && overlaps(cache.boxes[other], scratch.ways[fast]);
-  };
-  const auto list = [&](Range range, std::vector<ShapePair>& pairs) {
-    append_if(cache.candidates, range, pairs, [&](const ShapePair& pair) {
-      return meets(pair.shape_a, pair.shape_b) || meets(pair.shape_b, pair.shape_a);
-    });
-  };
-  list_in_chunks(workers, static_cast<int>(cache.candidates.size()), kCandidateGrain,
-                 scratch.pair_chunks, scratch.meetings, list);
+  find_ways_of_pairs(context, state, workers, scratch);
+  const std::vector<ShapePair>& candidates = scratch.pair_cache.candidates;
+  std::vector<std::uint32_t>& searching = scratch.searching;
+  const bool many_leave = scratch.leaving.size() * kCandidatesPerSearch > candidates.size();
+  if (!many_leave)
+    searching.insert(searching.end(), scratch.leaving.begin(), scratch.leaving.end());
+  for (const std::uint32_t s : searching) scratch.way_is[s] = WayIs::kSearched;
+  list_among(many_leave ? candidates : scratch.pairs, workers, scratch);
   const auto search_all = [&](Range range, std::vector<ShapePair>& pairs) {
     for (int i = range.begin; i < range.end; ++i)
-      search(state, scratch, scratch.searching[static_cast<std::size_t>(i)], pairs);
+      search(state, scratch, searching[static_cast<std::size_t>(i)], pairs);
   };
-  list_in_chunks(workers, static_cast<int>(scratch.searching.size()), kPairGrain,
-                 scratch.pair_chunks, scratch.meetings, search_all);
+  list_in_chunks(workers, static_cast<int>(searching.size()), kPairGrain, scratch.pair_chunks,
+                 scratch.meetings, search_all);
 }
 
 template void list_meetings(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);

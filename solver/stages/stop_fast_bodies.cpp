@@ -145,11 +145,11 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
 /// The fast body of a shape where it may be stopped at the other: null where there is none, and
 /// where something pushes it on and the other yields.
 template <int D>
-static FastBody<D>* stopped_at(const WorldState<D>& state, StepScratch<D>& scratch,
-                               std::uint32_t shape, std::uint32_t other) {
+static FastBody* stopped_at(const WorldState<D>& state, StepScratch<D>& scratch,
+                            std::uint32_t shape, std::uint32_t other) {
   const std::uint32_t place = scratch.fast_of_shape[shape];
   if (place == 0) return nullptr;
-  FastBody<D>& fast = scratch.fast_bodies[place - 1];
+  FastBody& fast = scratch.fast_bodies[place - 1];
   const bool yields = responds(state.bodies[state.shapes[other].body].kind);
   return fast.is_pushed && yields ? nullptr : &fast;
 }
@@ -183,14 +183,14 @@ void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
   for (std::size_t i = 0; i < meetings.size(); ++i) {
     if (scratch.fractions[i] == 1.0f) continue;
     const auto [a, b] = meetings[i];
-    for (FastBody<D>* fast : {stopped_at(state, scratch, a, b), stopped_at(state, scratch, b, a)})
+    for (FastBody* fast : {stopped_at(state, scratch, a, b), stopped_at(state, scratch, b, a)})
       if (fast != nullptr) fast->stop = min(fast->stop, scratch.fractions[i]);
   }
-  for (const FastBody<D>& fast : scratch.fast_bodies) {
+  for (const FastBody& fast : scratch.fast_bodies) {
     if (fast.stop == 1.0f) continue;
     Motion<D>& motion = scratch.motions[fast.slot];
-    motion.delta_position = fast.stop * fast.sweep.translation;
-    motion.delta_rotation = rotation_by(fast.stop * fast.sweep.turn);
+    motion.delta_rotation = rotation_by(fast.stop * turn_in(context, motion));
+    motion.delta_position = fast.stop * motion.delta_position;
   }
 }
 
