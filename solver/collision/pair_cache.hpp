@@ -80,6 +80,7 @@ struct PairCache {
   std::vector<ShapePair> candidates;          ///< Sorted by key: those with an active shape.
   std::vector<ShapePair> dormant;             ///< The others, sorted by key.
   std::vector<std::uint64_t> jointed_bodies;  ///< Sorted pairs that do not collide.
+  std::vector<std::uint32_t> first_jointed;   ///< By lower body of those, where its pairs begin.
   std::vector<std::uint32_t> forgotten;       ///< Shapes whose box or filter was changed.
   bool is_known = false;                      ///< Otherwise all but the statics is made anew.
   bool statics_are_known = false;             ///< Their tree, and which are half-spaces.

@@ -30,6 +30,10 @@ static void list_jointed_bodies(const WorldState<D>& state, PairCache<D>& cache)
       cache.jointed_bodies.push_back(body_pair_key(joint.body_a, joint.body_b));
   // Total order: equal integers are one and the same.
   std::sort(cache.jointed_bodies.begin(), cache.jointed_bodies.end());
+  cache.first_jointed.clear();
+  for (std::size_t i = 0; i < cache.jointed_bodies.size(); ++i)
+    cache.first_jointed.resize((cache.jointed_bodies[i] >> 32) + 1, static_cast<std::uint32_t>(i));
+  cache.first_jointed.push_back(static_cast<std::uint32_t>(cache.jointed_bodies.size()));
 }
 
 /// A floor or a wall along an axis of the world is open on all sides but one; any other half-space,
