@@ -184,4 +184,11 @@ void with_blocks(AnyPins& pins, Act&& act) {
   }
 }
 
+/// The same, with blocks of some width, of which there are none, where there are no pins.
+template <class AnyPins, class Act>
+void with_any_blocks(AnyPins& pins, Act&& act) {
+  if (pins.lanes == 0) return act(std::get<0>(pins.blocks));
+  with_blocks(pins, act);
+}
+
 }  // namespace cycloid::solver

@@ -55,35 +55,62 @@ void IslandSolver<D>::foresee_turns(const Island& island, std::span<const Motion
     };
     add(group.node_a, group.arm_a, -0.5 * h);
     add(group.node_b, group.arm_b, 0.5 * h);
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      for (int i = 0; i < D; ++i) row.missing += row.b[i] * parting[i];
-    }
+    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for (int r = 0; r < group.points; ++r) row[r].missing += parting[r];
+    for (int r = group.points; r < group.count; ++r)
+      for (int i = 0; i < D; ++i) row[r].missing += row[r].b[i] * parting[i];
   }
+}
+
+/// The speed at which the worst of the joints would close by itself, m/s or rad/s; and whether that
+/// is worth it.
+template <int D>
+Wide IslandSolver<D>::closing_speed(Island& island) const {
+  Wide greatest_square = 0.0;
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    Wide square = 0.0;
+    for (int r = 0; r < group.count; ++r) square += row[r].closing * row[r].closing;
+    greatest_square = std::max(greatest_square, square);
+  }
+  const Wide fastest = root(greatest_square);
+  island.closes = fastest >= kLetBe;
+  return fastest;
 }
 
 /// Has the joints miss what closes them, too, as far as that moves no body fast: the links of a
 /// chain that is all but straight have to go a long way aside for a little of its length, and what
-/// they are thrown with stays in the world as energy. @pre the matrix is factored.
+/// they are thrown with stays in the world as energy. How fast it would is known once it is solved;
+/// so what is missed is solved beside it, and the sum of the two is the solution.
+/// @pre the matrix is factored.
 template <int D>
-void IslandSolver<D>::close_joints(Island& island) {
+void IslandSolver<D>::solve_and_close(const Island& island, std::span<const Motion<D>> motions,
+                                      Wide fastest) {
+  load_both(island, motions);
+  matrix.solve_lower({island.steps.begin, island.contact_steps.begin}, both_);
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    correction[static_cast<std::size_t>(n)] = Vector::zero();
-  Wide fastest = 0.0;
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    kept_both_[static_cast<std::size_t>(n)] = both_[static_cast<std::size_t>(n)];
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    Wide square = 0.0;
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      square += row.closing * row.closing;
-      push<D>(group, row, -row.stiffness * row.closing, correction);
-    }
-    fastest = std::max(fastest, root(square));
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    push_rows<D, WidePair>(group, row, both_, [](const IslandRow<D>& of) {
+      return WidePair(of.holds ? -of.stiffness * of.missing : 0.0, 0.0);
+    });
   }
-  island.closes = fastest >= kLetBe;
-  if (!island.closes) return;
-  matrix.solve(island.steps, correction);
+  matrix.solve_lower(island.contact_steps, both_);
+  matrix.solve_upper(island.steps, both_);
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    for (int i = 0; i < kFreedoms; ++i)
+      correction[static_cast<std::size_t>(n)][i] = both_[static_cast<std::size_t>(n)][i].raw[1];
   const Wide share = share_of_correction(island, std::max(kMoved, kMovedShare * fastest));
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    const auto node = static_cast<std::size_t>(n);
+    for (int i = 0; i < kFreedoms; ++i) {
+      solution_[node][i] = both_[node][i].raw[0] + share * both_[node][i].raw[1];
+      kept_[node][i] = kept_both_[node][i].raw[0] + share * kept_both_[node][i].raw[1];
+    }
+  }
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     for (int r = group.first; r < group.first + group.count; ++r) {
@@ -93,9 +120,31 @@ void IslandSolver<D>::close_joints(Island& island) {
   }
 }
 
+/// -J^T W missing of joints and tensions, and -J^T W closing beside it.
+template <int D>
+void IslandSolver<D>::load_both(const Island& island, std::span<const Motion<D>> motions) {
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+    both_[static_cast<std::size_t>(n)] = Vec<kFreedoms, WidePair>::zero();
+  for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
+    const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
+    const Spin<D, Wide> pull = pull_of(tension, motions);
+    for (int i = 0; i < Dim<D>::kSpin; ++i)
+      both_[static_cast<std::size_t>(tension.node)][D + i] -= WidePair(pull[i], 0.0);
+  }
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    push_rows<D, WidePair>(group, row, both_, [](const IslandRow<D>& of) {
+      return -of.stiffness * WidePair(of.missing, of.closing);
+    });
+  }
+}
+
 template void IslandSolver<2>::foresee_turns(const Island&, std::span<const Motion<2>>, Wide);
 template void IslandSolver<3>::foresee_turns(const Island&, std::span<const Motion<3>>, Wide);
-template void IslandSolver<2>::close_joints(Island&);
-template void IslandSolver<3>::close_joints(Island&);
+template Wide IslandSolver<2>::closing_speed(Island&) const;
+template Wide IslandSolver<3>::closing_speed(Island&) const;
+template void IslandSolver<2>::solve_and_close(const Island&, std::span<const Motion<2>>, Wide);
+template void IslandSolver<3>::solve_and_close(const Island&, std::span<const Motion<3>>, Wide);
 
 }  // namespace cycloid::solver

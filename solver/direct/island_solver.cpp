@@ -45,10 +45,8 @@ void IslandSolver<D>::add_up_impulses(const Island& island) {
     momentum_[static_cast<std::size_t>(n)] = Vector::zero();
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      if (row.impulse != 0.0) push<D>(group, row, row.impulse, momentum_);
-    }
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    push_rows<D, Wide>(group, row, momentum_, [](const IslandRow<D>& of) { return of.impulse; });
   }
 }
 
@@ -73,7 +71,7 @@ Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyM
     Vector& momentum = momentum_[static_cast<std::size_t>(n)];
     const Vector velocity = answer_to<D>(momentum, masses[body_of[static_cast<std::size_t>(n)]]);
     energy += dot(momentum, velocity);
-    momentum = velocity;
+    momentum = guessed_[static_cast<std::size_t>(n)] = velocity;
   }
   if (!(work_done > kMuch * energy) || !(energy > 0.0)) return 1.0;
   return std::clamp(1.0 - work_done / energy, 0.0, 1.0);
@@ -91,11 +89,11 @@ void IslandSolver<D>::keep_of_guess(const Island& island, Wide share) {
   }
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      row.missing += along<D>(group, row, momentum_);
-      row.impulse = share * row.impulse;
-    }
+    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for_each_speed<D>(group, row, momentum_, [&](IslandRow<D>& of, Wide speed) {
+      of.missing += speed;
+      of.impulse = share * of.impulse;
+    });
   }
 }
 
@@ -104,6 +102,7 @@ Wide IslandSolver<D>::begin(const Island& island, std::span<const BodyMass<D>> m
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     change[static_cast<std::size_t>(n)] = Vector::zero();
   momentum_.resize(body_of.size());
+  guessed_.resize(body_of.size());
   return worth_of_guess(island, masses);
 }
 
@@ -134,10 +133,10 @@ bool IslandSolver<D>::let_go(const Island& island) {
   for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    for (int r = 0; r < group.count; ++r) {
-      row[r].answer = along<D>(group, row[r], solution_);
-      row[r].change = row[r].holds ? -row[r].stiffness * (row[r].missing + row[r].answer) : 0.0;
-    }
+    for_each_speed<D>(group, row, solution_, [](IslandRow<D>& of, Wide speed) {
+      of.answer = speed;
+      of.change = of.holds ? -of.stiffness * (of.missing + of.answer) : 0.0;
+    });
     if (!row[0].holds) continue;
     const Wide normal = row[0].impulse + row[0].change;
     const Wide square = square_of_tangents(group, row);
@@ -156,11 +155,11 @@ template <int D>
 void IslandSolver<D>::answer_joints(const Island& island) {
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      row.answer = along<D>(group, row, solution_);
-      row.change = -row.stiffness * (row.missing + row.answer);
-    }
+    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for_each_speed<D>(group, row, solution_, [](IslandRow<D>& of, Wide speed) {
+      of.answer = speed;
+      of.change = -of.stiffness * (of.missing + of.answer);
+    });
   }
 }
 
@@ -175,9 +174,10 @@ Wide IslandSolver<D>::share_of_correction(const Island& island, Wide speed) cons
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     if (!group.is_contact) continue;
-    for (int r = group.first; r < group.first + group.count; ++r)
-      most =
-          std::max(most, magnitude(along<D>(group, rows[static_cast<std::size_t>(r)], correction)));
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for_each_speed<D>(group, row, correction, [&](const IslandRow<D>&, Wide corrected) {
+      most = std::max(most, magnitude(corrected));
+    });
   }
   return speed / most;
 }
@@ -193,13 +193,14 @@ void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     if (!group.is_contact) continue;  // Joints close by velocities, and may have no row.
-    const IslandRow<D>& row = rows[static_cast<std::size_t>(group.first)];
-    if (!row.holds || row.closing == 0.0) continue;
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    if (!row->holds || row->closing == 0.0) continue;
     island.corrects = true;
-    push<D>(group, row, -row.stiffness * row.closing, correction);
+    push_row<D>(group, row, 0, -row->stiffness * row->closing, correction);
   }
   if (!island.corrects) return;
-  matrix.solve_lower(island.contact_steps, correction);  // Before them there is nothing.
+  matrix.solve_lower(island.contact_steps,
+                     correction);  // Before them there is nothing.
   matrix.solve_upper(island.steps, correction);
   const Wide share = share_of_correction(island, push_speed_max);
   for (int n = island.nodes.begin; n < island.nodes.end && share < 1.0; ++n)
@@ -210,14 +211,17 @@ void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
 /// between its contacts: they hold no load, grow with every solve that cannot meet its rows, and
 /// throw all about once the rows have turned a little. Velocities stay as they were solved.
 template <int D>
-void IslandSolver<D>::relieve_stress(const Island& island) {
+void IslandSolver<D>::relieve_stress(const Island& island, std::span<const BodyMass<D>> masses) {
   // In stacks and arches it is 1. With 30, once in three million ticks of rooms, a body leaves at
   // 2 km/s; with 10 the straight bridge parts.
   constexpr Wide kStress = 15.0;
-  add_up_impulses(island);
   Wide load = 0.0;
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    for (int i = 0; i < D; ++i) load += magnitude(momentum_[static_cast<std::size_t>(n)][i]);
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    const auto node = static_cast<std::size_t>(n);
+    Wide speed = 0.0;
+    for (int i = 0; i < D; ++i) speed += magnitude(guessed_[node][i] + change[node][i]);
+    load += speed / static_cast<Wide>(masses[body_of[node]].inverse_mass);
+  }
   Wide most = 0.0;
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
@@ -234,19 +238,6 @@ void IslandSolver<D>::relieve_stress(const Island& island) {
   }
 }
 
-/// The most that any row of a joint misses, m/s or rad/s.
-template <int D>
-Wide IslandSolver<D>::most_missing(const Island& island) const {
-  Wide most = 0.0;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    if (group.is_contact) continue;
-    for (int r = group.first; r < group.first + group.count; ++r)
-      most = std::max(most, magnitude(rows[static_cast<std::size_t>(r)].missing));
-  }
-  return most;
-}
-
 /// Joints that miss what they hold, after a solve, contradict each other or the contacts; their
 /// impulses would grow with every substep, so the next one starts without any.
 template <int D>
@@ -254,7 +245,13 @@ void IslandSolver<D>::forget_conflict(const Island& island) {
   // m/s or rad/s. What is solvable misses a thousandth; a chain that is all but straight and takes
   // a blow a tenth, for that is what its impulses change by: with 0.1 a bridge is let go then.
   constexpr Wide kConflict = 0.5;
-  if (!(most_missing(island) > kConflict)) return;
+  Wide most = 0.0;
+  for (int g = island.joints.begin; g < island.joints.end; ++g) {
+    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    for (int r = 0; r < group.count; ++r) most = std::max(most, magnitude(row[r].missing));
+  }
+  if (!(most > kConflict)) return;
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     for (int r = group.first; r < group.first + group.count; ++r)
@@ -269,37 +266,53 @@ void IslandSolver<D>::count_factor(int products, Island& island) {
   island.products_left -= products;
 }
 
+/// Finds the contacts that hold, and solves with them, in one round. The first pass of the first
+/// round, whose joints close, solves for all nodes at once.
+template <int D>
+void IslandSolver<D>::solve_round(Island& island, std::span<const BodyMass<D>> masses,
+                                  std::span<const Motion<D>> motions, bool is_first_round) {
+  const Range inner{island.steps.begin, island.contact_steps.begin};
+  choose(island);
+  for (int pass = 0; pass <= kPasses; ++pass) {
+    const bool is_first = is_first_round && pass == 0;
+    if (is_first)
+      assemble_joints(island, masses);
+    else
+      matrix.restore(island.contact_steps);
+    assemble_contacts(island);
+    const Wide fastest = is_first ? closing_speed(island) : 0.0;
+    const bool solves_both = is_first && island.closes;
+    if (solves_both) {
+      solve_and_close(island, motions, fastest);
+    } else {
+      if (pass == 0) load_joints(island, motions);
+      solve_contacts(island);
+    }
+    count_factor(is_first ? island.products : island.contact_products, island);
+    if (let_go(island) && pass < kPasses) continue;
+    if (!solves_both) matrix.solve_upper(inner, solution_);
+    return answer_joints(island);
+  }
+}
+
 template <int D>
 Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masses,
                               std::span<const Motion<D>> motions, const IslandStep& step) {
   solution_.resize(body_of.size());
   kept_.resize(body_of.size());
+  both_.resize(body_of.size());
+  kept_both_.resize(body_of.size());
   const Wide share = begin(island, masses);
   foresee_turns(island, motions, step.h);
   if (share < 1.0) keep_of_guess(island, share);
   Wide taken = 0.0;
   for (int round = 0; round < kRounds && taken < kWholeStep; ++round) {
     if (round > 0 && island.products_left <= 0) break;
-    choose(island);
-    for (int pass = 0; pass <= kPasses; ++pass) {
-      const bool is_first = round == 0 && pass == 0;
-      if (is_first)
-        assemble_joints(island, masses);
-      else
-        matrix.restore(island.contact_steps);
-      assemble_contacts(island);
-      if (is_first) close_joints(island);
-      if (pass == 0) load_joints(island, motions);
-      solve_contacts(island);
-      count_factor(is_first ? island.products : island.contact_products, island);
-      if (!let_go(island) || pass == kPasses) break;
-    }
-    matrix.solve_upper({island.steps.begin, island.contact_steps.begin}, solution_);
-    answer_joints(island);
+    solve_round(island, masses, motions, round == 0);
     taken = take(island, masses);
   }
   correct_positions(island, step.push_speed_max);
-  relieve_stress(island);
+  relieve_stress(island, masses);
   forget_conflict(island);
   return taken < kWholeStep ? Solved::kPartly : Solved::kWhole;
 }

@@ -5,7 +5,9 @@
 
 namespace cycloid::solver {
 
-/// One scalar row of an island: Cdot = a . v_a + b . v_b, of nodes instead of bodies.
+/// One scalar row of an island: Cdot = a . v_a + b . v_b, of nodes instead of bodies. A row of a
+/// point has but its direction, the first D of `b`; that of a joint's point is an axis of the
+/// world, and is not written down at all.
 template <int D>
 struct IslandRow {
   static constexpr int kFreedoms = Dim<D>::kFreedoms;
@@ -34,6 +36,7 @@ struct IslandRows {
   Wide friction;
   Vec<D, Wide> arm_a;  ///< Of a point from the node; 0 where it cannot turn, or there is no point.
   Vec<D, Wide> arm_b;
+  int points = 0;
 };
 
 /// A contact or a rigid joint between the bodies of two slots.
@@ -67,6 +70,17 @@ struct IslandWork {
   std::uint64_t factors = 0;
   std::uint64_t products = 0;  ///< Of blocks, in those.
   std::uint64_t rests = 0;     ///< Islands that the warm start had brought to rest.
+};
+
+/// Slots or places sorted by their island, those of one ascending. Made when it is asked for.
+struct ByIsland {
+  std::vector<std::uint32_t> numbers;
+  std::vector<std::uint32_t>
+      first;  ///< By island, where its numbers begin; the next one's are the end.
+
+  std::span<const std::uint32_t> of(std::size_t island) const {
+    return std::span(numbers).subspan(first[island], first[island + 1] - first[island]);
+  }
 };
 
 /// What came of an island's solve.
@@ -161,6 +175,9 @@ class IslandSolver {
   std::vector<int> island_of;              ///< By slot; -1: nothing holds it.
   std::vector<Vector> change;              ///< By node: of the velocity, m/s and rad/s.
   std::vector<Vector> correction;          ///< By node: speed for positions alone.
+  ByIsland slots_of;                       ///< By island, if is_sorted.
+  ByIsland held_of;                        ///< Places in `held`, the same.
+  bool is_sorted = false;                  ///< Since islands were last found.
   std::vector<std::uint32_t> loaded;       ///< Slots of bodies whose load calls for this solver.
   bool acts = false;                       ///< In this tick, on some island.
   bool has_all = false;                    ///< All that moves, in substeps of twice the length.
@@ -190,14 +207,19 @@ class IslandSolver {
   Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);
   void keep_of_guess(const Island& island, Wide share);
   void foresee_turns(const Island& island, std::span<const Motion<D>> motions, Wide h);
-  void close_joints(Island& island);
+  Wide closing_speed(Island& island) const;
+  void load_both(const Island& island, std::span<const Motion<D>> motions);
+  void solve_and_close(const Island& island, std::span<const Motion<D>> motions, Wide fastest);
   void choose(const Island& island);
   bool let_go(const Island& island);
+  void solve_round(Island& island, std::span<const BodyMass<D>> masses,
+                   std::span<const Motion<D>> motions, bool is_first_round);
   void count_factor(int products, Island& island);
   void answer_joints(const Island& island);
   void assemble_joints(const Island& island, std::span<const BodyMass<D>> masses);
   void assemble_contacts(const Island& island);
   void load_joints(const Island& island, std::span<const Motion<D>> motions);
+  Spin<D, Wide> pull_of(const IslandTension<D>& tension, std::span<const Motion<D>> motions) const;
   void solve_contacts(const Island& island);
   void assemble_point(const IslandRows<D>& group, Wide stiffness);
   void assemble_row(const IslandRows<D>& group, const IslandRow<D>& row);
@@ -206,13 +228,16 @@ class IslandSolver {
   Wide take(const Island& island, std::span<const BodyMass<D>> masses);
   Wide share_of_correction(const Island& island, Wide speed) const;
   void correct_positions(Island& island, Wide push_speed_max);
-  Wide most_missing(const Island& island) const;
-  void relieve_stress(const Island& island);
+  void relieve_stress(const Island& island, std::span<const BodyMass<D>> masses);
   void forget_conflict(const Island& island);
 
   std::vector<Vector> solution_;  ///< By node.
   std::vector<Vector> kept_;      ///< By node: what a solve of the contacts begins with.
   std::vector<Vector> momentum_;
+  std::vector<Vector> guessed_;  ///< By node: velocity that the first guess is of.
+  std::vector<typename BodyMatrix<D>::VectorPair>
+      both_;  ///< By node: of what is missed, and of closing.
+  std::vector<typename BodyMatrix<D>::VectorPair> kept_both_;
 };
 
 }  // namespace cycloid::solver

@@ -58,6 +58,22 @@ static Wide cross_column(const Vec<3, Wide>& r, int i, int j) {
   return (j - i + 3) % 3 == 1 ? -entry : entry;
 }
 
+/// block += scale P^T P of what a point does in all directions, P = (I, -[p]x); only the lower
+/// triangle is read.
+template <int D>
+static void add_point_square(Wide scale, const Vec<D, Wide>& p,
+                             SquareBlock<Dim<D>::kFreedoms>& block) {
+  constexpr int kSpin = Dim<D>::kSpin;
+  const Wide square = scale * dot(p, p);
+  for (int i = 0; i < D; ++i) block.m[i][i] += scale;
+  for (int i = 0; i < kSpin; ++i) {
+    for (int j = 0; j < D; ++j) block.m[D + i][j] += scale * cross_column(p, i, j);
+    block.m[D + i][D + i] += square;
+    if constexpr (kSpin == 3)
+      for (int j = 0; j <= i; ++j) block.m[D + i][D + j] -= scale * p[i] * p[j];
+  }
+}
+
 /// block += scale P^T Q of what a point does in all directions: P = (I, -[p]x), Q = (I, -[q]x).
 /// The directions of a point that sticks are orthonormal, so their squares add up to this.
 template <int D>
@@ -101,11 +117,26 @@ void IslandSolver<D>::assemble_joints(const Island& island, std::span<const Body
   }
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r)
-      assemble_row(group, rows[static_cast<std::size_t>(r)]);
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    if (group.points > 0) assemble_point(group, row->stiffness);
+    for (int r = group.points; r < group.count; ++r) assemble_row(group, row[r]);
   }
   matrix.factor({island.steps.begin, island.contact_steps.begin});
   matrix.keep(island.contact_steps);
+}
+
+/// A row of a point with all that it does to both nodes.
+template <int D>
+static IslandRow<D> written_out(const IslandRows<D>& group, const IslandRow<D>& row) {
+  IslandRow<D> whole = row;
+  const Spin<D, Wide> turn_a = moment(group.arm_a, direction_of<D>(row));
+  const Spin<D, Wide> turn_b = moment(group.arm_b, direction_of<D>(row));
+  for (int i = 0; i < D; ++i) whole.a[i] = -row.b[i];
+  for (int i = 0; i < Dim<D>::kSpin; ++i) {
+    whole.a[D + i] = -turn_a[i];
+    whole.b[D + i] = turn_b[i];
+  }
+  return whole;
 }
 
 /// Adds J^T W J of the contacts that hold and factors what `assemble_joints` has left.
@@ -120,9 +151,23 @@ void IslandSolver<D>::assemble_contacts(const Island& island) {
       continue;
     }
     for (int r = 0; r < group.count; ++r)
-      if (row[r].holds) assemble_row(group, row[r]);
+      if (row[r].holds) assemble_row(group, r < group.points ? written_out(group, row[r]) : row[r]);
   }
   matrix.factor(island.contact_steps);
+}
+
+/// The torque, as an impulse, by which a tension answers to how its body turns now.
+template <int D>
+Spin<D, Wide> IslandSolver<D>::pull_of(const IslandTension<D>& tension,
+                                       std::span<const Motion<D>> motions) const {
+  const auto node = static_cast<std::size_t>(tension.node);
+  const Motion<D>& motion = motions[body_of[node]];
+  Spin<D, Wide> pull = Spin<D, Wide>::zero();
+  for (int i = 0; i < Dim<D>::kSpin; ++i)
+    for (int j = 0; j < Dim<D>::kSpin; ++j)
+      pull[i] += static_cast<Wide>(tension.stiffness) * across(tension.along, i, j) *
+                 (static_cast<Wide>(motion.spin[j]) + change[node][D + j]);
+  return pull;
 }
 
 /// -J^T W missing of joints and tensions, brought forward to the bodies that touch something.
@@ -133,20 +178,15 @@ void IslandSolver<D>::load_joints(const Island& island, std::span<const Motion<D
     solution_[static_cast<std::size_t>(n)] = Vector::zero();
   for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
     const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
-    const auto node = static_cast<std::size_t>(tension.node);
-    const Motion<D>& motion = motions[body_of[node]];
+    const Spin<D, Wide> pull = pull_of(tension, motions);
     for (int i = 0; i < Dim<D>::kSpin; ++i)
-      for (int j = 0; j < Dim<D>::kSpin; ++j)
-        solution_[node][D + i] -= static_cast<Wide>(tension.stiffness) *
-                                  across(tension.along, i, j) *
-                                  (static_cast<Wide>(motion.spin[j]) + change[node][D + j]);
+      solution_[static_cast<std::size_t>(tension.node)][D + i] -= pull[i];
   }
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      push<D>(group, row, -row.stiffness * row.missing, solution_);
-    }
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    push_rows<D, Wide>(group, row, solution_,
+                       [](const IslandRow<D>& of) { return -of.stiffness * of.missing; });
   }
   matrix.solve_lower({island.steps.begin, island.contact_steps.begin}, solution_);
   const auto begin = solution_.begin();
@@ -162,10 +202,11 @@ void IslandSolver<D>::solve_contacts(const Island& island) {
             solution_.begin() + island.nodes.begin);
   for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      if (row.holds) push<D>(group, row, -row.stiffness * row.missing, solution_);
-    }
+    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    if (row->holds)  // Else no tangent does.
+      push_rows<D, Wide>(group, row, solution_, [](const IslandRow<D>& of) {
+        return of.holds ? -of.stiffness * of.missing : 0.0;
+      });
   }
   matrix.solve(island.contact_steps, solution_);
 }
@@ -175,8 +216,8 @@ template <int D>
 void IslandSolver<D>::assemble_point(const IslandRows<D>& group, Wide stiffness) {
   const int a = group.node_a;
   const int b = group.node_b;
-  if (a >= 0) add_point<D>(stiffness, group.arm_a, group.arm_a, matrix.diagonal(a));
-  if (b >= 0) add_point<D>(stiffness, group.arm_b, group.arm_b, matrix.diagonal(b));
+  if (a >= 0) add_point_square<D>(stiffness, group.arm_a, matrix.diagonal(a));
+  if (b >= 0) add_point_square<D>(stiffness, group.arm_b, matrix.diagonal(b));
   if (group.pair < 0) return;
   if (a > b)
     add_point<D>(-stiffness, group.arm_a, group.arm_b, matrix.beside(group.pair));
@@ -221,7 +262,7 @@ bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyM
       if (more == 0.0) continue;
       bounded = true;
       row[r].change += more;
-      push<D>(group, row[r], more, momentum_);
+      push_row<D>(group, row, r, more, momentum_);
     }
   }
   if (!bounded) return false;
@@ -233,7 +274,8 @@ bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyM
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    for (int r = 0; r < group.count; ++r) row[r].answer = along<D>(group, row[r], solution_);
+    for_each_speed<D>(group, row, solution_,
+                      [](IslandRow<D>& of, Wide speed) { of.answer = speed; });
   }
   return true;
 }
@@ -275,6 +317,10 @@ Wide IslandSolver<D>::take(const Island& island, std::span<const BodyMass<D>> ma
   return step;
 }
 
+template Spin<2, Wide> IslandSolver<2>::pull_of(const IslandTension<2>&,
+                                                std::span<const Motion<2>>) const;
+template Spin<3, Wide> IslandSolver<3>::pull_of(const IslandTension<3>&,
+                                                std::span<const Motion<3>>) const;
 template void IslandSolver<2>::assemble_joints(const Island&, std::span<const BodyMass<2>>);
 template void IslandSolver<2>::assemble_contacts(const Island&);
 template void IslandSolver<2>::load_joints(const Island&, std::span<const Motion<2>>);

@@ -10,6 +10,24 @@ namespace cycloid::solver {
 /// the same everywhere that floats do; contraction is off for both.
 using Wide = double;
 
+/// Two of them side by side, for what is solved with the same factors at the same time. The lanes
+/// never mix, as in Lanes.
+struct alignas(16) WidePair {
+  typedef Wide Raw __attribute__((vector_size(16)));
+  Raw raw;
+
+  WidePair() = default;
+  explicit WidePair(Raw both) : raw(both) {}
+  explicit WidePair(float both) : raw{both, both} {}
+  WidePair(Wide first, Wide second) : raw{first, second} {}
+
+  friend WidePair operator+(WidePair a, WidePair b) { return WidePair(a.raw + b.raw); }
+  friend WidePair operator-(WidePair a, WidePair b) { return WidePair(a.raw - b.raw); }
+  friend WidePair operator*(Wide a, WidePair b) { return WidePair(Raw{a, a} * b.raw); }
+  WidePair& operator+=(WidePair b) { return *this = *this + b; }
+  WidePair& operator-=(WidePair b) { return *this = *this - b; }
+};
+
 inline Wide magnitude(Wide x) {
   return x < 0.0 ? -x : x;
 }

@@ -238,6 +238,7 @@ void group_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
   if (!list_held<D, W>(scratch)) {
     find_islands(scratch);
     count_pairs(solver);
+    solver.is_sorted = false;
   }
   solver.acts = want_islands(solver);
   if (!solver.acts) return;

@@ -5,6 +5,23 @@
 
 namespace cycloid::solver {
 
+/// Stiffness of a row over the greatest mass of its island: what a load leaves of its impulse to
+/// the next substep is a thousandth.
+inline constexpr float kStiffness = 1.0e3f;
+
+template <int N>
+Vec<N, Wide> widened(const Vec<N>& v) {
+  Vec<N, Wide> wide;
+  for (int i = 0; i < N; ++i) wide[i] = static_cast<Wide>(v[i]);
+  return wide;
+}
+
+/// Speed of the point of a body at `arm`, m/s.
+template <int D>
+Vec<D, Wide> speed_at(const Motion<D>& motion, const Vec<D, Wide>& arm) {
+  return widened(motion.velocity) + spin_cross(widened(motion.spin), arm);
+}
+
 /// Takes down what holds: every contact in the order of the colouring, which is the same whatever
 /// the lanes, then every joint that does not yield. @returns whether it is what held before, in a
 /// world of as many slots, so that all that was made of it still stands.
@@ -24,6 +41,14 @@ void list_weighed(StepScratch<D>& scratch, typename IslandSolver<D>::Island& isl
 /// Writes the greatest mass and inertia of an island's nodes.
 template <int D>
 void find_heaviest(const StepScratch<D>& scratch, typename IslandSolver<D>::Island& island);
+
+/// The rows and tensions of an island's joints as the warm start has left them: of the point that
+/// one holds along the axes of the world. And back the impulses that have come of them.
+template <int D>
+void gather_joints(const StepContext<D>& context, StepScratch<D>& scratch,
+                   const typename IslandSolver<D>::Island& island);
+template <int D>
+void scatter_joints(StepScratch<D>& scratch, const typename IslandSolver<D>::Island& island);
 
 /// The rows, tensions and velocities of an island as the warm start has left them, from blocks and
 /// joint rows. @pre the arms of the blocks are of the present poses.

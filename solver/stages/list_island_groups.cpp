@@ -90,13 +90,40 @@ void find_heaviest(const StepScratch<D>& scratch, typename IslandSolver<D>::Isla
   }
 }
 
+/// Sorts the numbers [0, count) by island_at(number); those of no island, -1, are left out.
+template <class IslandAt>
+static void sort_by_island(std::size_t count, std::size_t islands, IslandAt&& island_at,
+                           ByIsland& sorted) {
+  sorted.first.assign(islands + 1, 0);
+  for (std::size_t i = 0; i < count; ++i)
+    if (const int at = island_at(i); at >= 0) ++sorted.first[static_cast<std::size_t>(at)];
+  std::uint32_t end = 0;
+  for (std::uint32_t& first : sorted.first) end = first += end;
+  sorted.numbers.resize(end);
+  for (std::size_t i = count; i-- > 0;)
+    if (const int at = island_at(i); at >= 0)
+      sorted.numbers[--sorted.first[static_cast<std::size_t>(at)]] = static_cast<std::uint32_t>(i);
+}
+
+template <int D>
+static void sort_by_island(std::size_t slots, IslandSolver<D>& solver) {
+  if (solver.is_sorted) return;
+  sort_by_island(
+      slots, solver.islands.size(), [&](std::size_t slot) { return solver.island_of[slot]; },
+      solver.slots_of);
+  sort_by_island(
+      solver.held.size(), solver.islands.size(),
+      [&](std::size_t place) { return solver.island_at(solver.held[place]); }, solver.held_of);
+  solver.is_sorted = true;
+}
+
 template <int D>
 void list_weighed(StepScratch<D>& scratch, typename IslandSolver<D>::Island& island) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  const auto at = static_cast<int>(&island - solver.islands.data());
+  const auto at = static_cast<std::size_t>(&island - solver.islands.data());
+  sort_by_island(scratch.masses.size(), solver);
   island.nodes.begin = island.nodes.end = static_cast<int>(solver.body_of.size());
-  for (std::uint32_t slot = 0; slot < scratch.masses.size(); ++slot) {
-    if (solver.island_of[slot] != at) continue;
+  for (const std::uint32_t slot : solver.slots_of.of(at)) {
     solver.node_of[slot] = island.nodes.end++;
     solver.body_of.push_back(slot);
   }
@@ -104,8 +131,8 @@ void list_weighed(StepScratch<D>& scratch, typename IslandSolver<D>::Island& isl
   solver.correction.resize(solver.body_of.size());
   const std::size_t first = solver.groups.size();
   int joints = 0;
-  for (const HeldPair& pair : solver.held) {
-    if (solver.island_at(pair) != at) continue;
+  for (const std::uint32_t place : solver.held_of.of(at)) {
+    const HeldPair& pair = solver.held[place];
     const std::size_t next = solver.groups.size();
     solver.groups.resize(next + static_cast<std::size_t>(pair.points));
     solver.sources.resize(solver.groups.size());

@@ -7,8 +7,9 @@ namespace cycloid::solver {
 
 /// What an island may miss before it is solved. The impulses of a solve have stopped what moved;
 /// as the next warm start they would set it going the other way, so what was just solved is held to
-/// fifty times less. Overlap may be left half a millimetre beyond the slop.
-static constexpr RestBounds kRest{1.0e-3f, 2.0e-5f, 1.0e-2f};
+/// twenty times less. Overlap may be left half a millimetre beyond the slop. At 1 mm/s a stack of
+/// thirty leans until its boxes move at 11 mm/s before it is caught, over and over.
+static constexpr RestBounds kRest{4.0e-4f, 2.0e-5f, 1.0e-2f};
 /// The same of joints, m/s or rad/s; and what one may miss before its island's guess is looked at
 /// for its worth where it is left to the sweeps. Swings of what is solved well miss as much.
 static constexpr JointBounds kJointBounds{kRest.misses, kRest.stirs, 1.0f};
@@ -40,18 +41,16 @@ template <int D>
 static bool any_joint_misses(const StepContext<D>& context, const StepScratch<D>& scratch,
                              const typename IslandSolver<D>::Island& island,
                              const JointBound& bound) {
-  const auto& sources = scratch.islands_solved.sources;
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const auto place = static_cast<std::size_t>(sources[static_cast<std::size_t>(g)].place);
-    bool any = false;
-    with_pin(scratch.pins, place, [&](const auto& block, int lane) {
-      any = (block.rest.*bound.lanes >> lane & 1u) != 0;
-    });
-    if (scratch.pins.lane_of[place] == Pins<D>::kNone)
-      any = misses(context, scratch, scratch.joint_rows[place], kJointBounds.*bound.bound);
-    if (any) return true;
-  }
-  return false;
+  bool any = false;
+  for_each_joint(
+      scratch.pins, scratch.islands_solved, island.joints, [&](const auto* block, int at, int) {
+        if (any) return;
+        any = block != nullptr
+                  ? (block->rest.*bound.lanes >> at & 1u) != 0
+                  : misses(context, scratch, scratch.joint_rows[static_cast<std::size_t>(at)],
+                           kJointBounds.*bound.bound);
+      });
+  return any;
 }
 
 /// In which blocks' lanes the warm start has left something, over all blocks.
@@ -101,13 +100,17 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
     const auto& source = solver.sources[static_cast<std::size_t>(g)];
     blocks[static_cast<std::size_t>(source.place)].settled &= ~(LaneBits{1} << source.lane);
   }
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const auto place = static_cast<std::size_t>(solver.sources[static_cast<std::size_t>(g)].place);
-    const bool relaxes = island.closes || !solver.has_all;
-    scratch.joint_rows[place].solved_directly = !sweeps_joints;
-    scratch.joint_rows[place].relaxes = relaxes;
-    settle_pin(place, !sweeps_joints, relaxes, scratch.pins);
-  }
+  const bool relaxes = island.closes || !solver.has_all;
+  for_each_joint(scratch.pins, solver, island.joints, [&](auto* block, int at, int g) {
+    const int place = solver.sources[static_cast<std::size_t>(g)].place;
+    JointRow<D>& joint = scratch.joint_rows[static_cast<std::size_t>(place)];
+    joint.solved_directly = !sweeps_joints;
+    joint.relaxes = relaxes;
+    if (block == nullptr) return;
+    const LaneBits bit = LaneBits{1} << at;
+    block->settled = sweeps_joints ? block->settled & ~bit : block->settled | bit;
+    block->relaxes = relaxes ? block->relaxes | bit : block->relaxes & ~bit;
+  });
 }
 
 /// Takes back what is not worth having of the guess of an island that the sweeps have, where that

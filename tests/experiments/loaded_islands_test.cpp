@@ -114,13 +114,18 @@ TEST(LoadedIslands, ChainsOfUnequalMassesAreHeldFromTheFirstTick) {
   }
 }
 
-// At rest an island may miss a millimetre per second in each contact, and a stack of thirty that
+// At rest an island may miss 0.4 mm/s in each contact, and a stack of thirty that
 // leans falls like a pendulum on its head: while biased sweeps passed it by, it was never at rest.
 TEST(LoadedIslands, AStackOfThirtyStandsForAMinute) {
   scenes::Simulation stack = begin_trial("trial-stack-30", Tuning::soft_loaded());
-  for (int tick = 0; tick < 3600; ++tick) ASSERT_TRUE(stack.step({}).ok());
-  for (const solver::Body<2>& body : stack.planar()->state().bodies)
-    EXPECT_LT(dot(body.velocity, body.velocity), 0.005f * 0.005f);
+  float fastest_square = 0.0f;
+  for (int tick = 0; tick < 3600; ++tick) {
+    ASSERT_TRUE(stack.step({}).ok());
+    if (tick < 1800) continue;
+    for (const solver::Body<2>& body : stack.planar()->state().bodies)
+      fastest_square = std::max(fastest_square, dot(body.velocity, body.velocity));
+  }
+  EXPECT_LT(fastest_square, 0.005f * 0.005f) << "it leans further before it is caught";
   const solver::Body<2>& top = stack.planar()->state().bodies.back();
   EXPECT_NEAR(top.position[0], 0.0f, 0.5f);
   EXPECT_NEAR(top.position[1], 29.5f, 0.05f);

@@ -129,6 +129,33 @@ TYPED_TEST(BodyMatrixTest, SolvesLoopsOfStiffAndWeakSprings) {
   }
 }
 
+TYPED_TEST(BodyMatrixTest, SolvesTwoAtOnceToTheBitsOfOneAfterTheOther) {
+  constexpr int D = TestFixture::kDim;
+  using Matrix = BodyMatrix<D>;
+  SpringSystem<D> system;
+  system.draw(25, grid(5), 9);
+  ASSERT_TRUE(system.analyse(1 << 20));
+  system.assemble();
+  system.matrix.factor(system.steps);
+  std::vector<typename Matrix::Vector> first(25);
+  std::vector<typename Matrix::Vector> second(25);
+  std::vector<typename Matrix::VectorPair> both(25);
+  for (std::size_t n = 0; n < both.size(); ++n)
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i) {
+      first[n][i] = static_cast<double>(n % 7) - 0.3 * i;
+      second[n][i] = 0.01 * static_cast<double>(n) + i;
+      both[n][i] = WidePair(first[n][i], second[n][i]);
+    }
+  system.matrix.solve(system.steps, first);
+  system.matrix.solve(system.steps, second);
+  system.matrix.solve(system.steps, both);
+  for (std::size_t n = 0; n < both.size(); ++n)
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i) {
+      EXPECT_EQ(both[n][i].raw[0], first[n][i]) << n;
+      EXPECT_EQ(both[n][i].raw[1], second[n][i]) << n;
+    }
+}
+
 TYPED_TEST(BodyMatrixTest, ChainsAndStarsFillInNothing) {
   constexpr int D = TestFixture::kDim;
   std::vector<NodePair> chain;
