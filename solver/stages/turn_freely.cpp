@@ -2,7 +2,7 @@
 
 namespace cycloid::solver {
 
-using L = Lanes<4>;
+using FourLanes = Lanes<4>;
 
 bool keeps_its_spin(const Body<3>& body) {
   if (!(body.inverse_inertia.m[0] > 0.0f)) return true;
@@ -42,10 +42,10 @@ void turn_freely(float h, const Body<3>& body, Motion<3>& motion) {
 
 /// What of four bodies decides how they turn, one in each lane.
 struct TurningBodies {
-  Rotation<3, L> rotation;
-  L inertia[9];
-  L inverse_inertia[9];
-  L tumbles;  ///< 1, or 0 where the body keeps its spin.
+  Rotation<3, FourLanes> rotation;
+  FourLanes inertia[9];
+  FourLanes inverse_inertia[9];
+  FourLanes tumbles;  ///< 1, or 0 where the body keeps its spin.
 };
 
 static TurningBodies gather_bodies(const Body<3>* bodies, const LaneIndices<4>& slots) {
@@ -58,73 +58,76 @@ static TurningBodies gather_bodies(const Body<3>* bodies, const LaneIndices<4>& 
     numbers[22][lane] = keeps_its_spin(body) ? 0.0f : 1.0f;
   }
   TurningBodies in_lanes;
-  for (int i = 0; i < 4; ++i) in_lanes.rotation[i] = L::load(numbers[i]);
-  for (int i = 0; i < 9; ++i) in_lanes.inertia[i] = L::load(numbers[4 + i]);
-  for (int i = 0; i < 9; ++i) in_lanes.inverse_inertia[i] = L::load(numbers[13 + i]);
-  in_lanes.tumbles = L::load(numbers[22]);
+  for (int i = 0; i < 4; ++i) in_lanes.rotation[i] = FourLanes::load(numbers[i]);
+  for (int i = 0; i < 9; ++i) in_lanes.inertia[i] = FourLanes::load(numbers[4 + i]);
+  for (int i = 0; i < 9; ++i) in_lanes.inverse_inertia[i] = FourLanes::load(numbers[13 + i]);
+  in_lanes.tumbles = FourLanes::load(numbers[22]);
   return in_lanes;
 }
 
 template <int N>
-static void choose(L::Mask mask, const Vec<N, L>& yes, Vec<N, L>& or_as_it_is) {
+static void choose(FourLanes::Mask mask, const Vec<N, FourLanes>& yes,
+                   Vec<N, FourLanes>& or_as_it_is) {
   for (int i = 0; i < N; ++i) or_as_it_is[i] = select(mask, yes[i], or_as_it_is[i]);
 }
 
-static bool any(L::Mask mask) {
-  return any_above_zero(select(mask, L(1.0f), L(0.0f)));
+static bool any(FourLanes::Mask mask) {
+  return any_above_zero(select(mask, FourLanes(1.0f), FourLanes(0.0f)));
 }
 
-static L::Mask is_large(const Spin<3, L>& turn) {
-  return ~(dot(turn, turn) < L(kSmallTurnSquare));
+static FourLanes::Mask is_large(const Spin<3, FourLanes>& turn) {
+  return ~(dot(turn, turn) < FourLanes(kSmallTurnSquare));
 }
 
 /// What Newton's method finds of the spin in the middle, from `spin`, in lanes of `tumbles`.
 /// @returns false where a turn on the way is too large for a series.
-static bool find_middle(L half, const TurningBodies& bodies, const Spin<3, L>& spin,
-                        const Spin<3, L>& momentum, L::Mask tumbles, Spin<3, L>& middle) {
-  L::Mask open = tumbles;
-  const L enough = L(kMidpointAccuracy) * dot(spin, spin);
+static bool find_middle(FourLanes half, const TurningBodies& bodies, const Spin<3, FourLanes>& spin,
+                        const Spin<3, FourLanes>& momentum, FourLanes::Mask tumbles,
+                        Spin<3, FourLanes>& middle) {
+  FourLanes::Mask open = tumbles;
+  const FourLanes enough = FourLanes(kMidpointAccuracy) * dot(spin, spin);
   for (int i = 0; i < kMidpointIterations && any(open); ++i) {
-    const Spin<3, L> turn = half * (spin + middle);
+    const Spin<3, FourLanes> turn = half * (spin + middle);
     if (any(open & is_large(turn))) return false;
-    const Spin<3, L> change = small_turned_back_change(turn, momentum);
-    const Spin<3, L> moved = solve_turning(bodies.inertia, -half * (momentum + change),
-                                           change - times(bodies.inertia, middle));
+    const Spin<3, FourLanes> change = small_turned_back_change(turn, momentum);
+    const Spin<3, FourLanes> moved = solve_turning(bodies.inertia, -half * (momentum + change),
+                                                   change - times(bodies.inertia, middle));
     choose(open, middle + moved, middle);
     open = open & ~(dot(moved, moved).raw <= enough.raw);
   }
   return true;
 }
 
-static void turn_lanes_by(const Rotation<3, L>& by, L::Mask mask, Rotation<3, L>& q) {
-  const Rotation<3, L> turned = compose(by, q);
-  const L size = sqrt(dot(turned, turned));
-  const L::Mask has_size = size > L(1.0e-12f);
-  choose(mask & has_size, (L(1.0f) / select(has_size, size, L(1.0f))) * turned, q);
+static void turn_lanes_by(const Rotation<3, FourLanes>& by, FourLanes::Mask mask,
+                          Rotation<3, FourLanes>& q) {
+  const Rotation<3, FourLanes> turned = compose(by, q);
+  const FourLanes size = sqrt(dot(turned, turned));
+  const FourLanes::Mask has_size = size > FourLanes(1.0e-12f);
+  choose(mask & has_size, (FourLanes(1.0f) / select(has_size, size, FourLanes(1.0f))) * turned, q);
 }
 
 bool move_four(float h, const Body<3>* bodies, const LaneIndices<4>& slots, Motion<3>* motions) {
   MotionLanes<3, 4> motion = gather<3, 4>(motions, slots);
   const TurningBodies of = gather_bodies(bodies, slots);
-  const L::Mask tumbles = of.tumbles > L(0.0f);
-  const Rotation<3, L> before = compose(motion.delta_rotation, of.rotation);
-  const Spin<3, L> spin = rotate_back(before, motion.spin);
-  const Spin<3, L> momentum = times(of.inertia, spin);
-  Spin<3, L> middle = Spin<3, L>::zero();
-  if (!find_middle(L(0.5f * h), of, spin, momentum, tumbles, middle)) return false;
-  const Spin<3, L> turn = L(h) * (spin + middle);
-  Spin<3, L> turn_in_world = L(h) * motion.spin;
+  const FourLanes::Mask tumbles = of.tumbles > FourLanes(0.0f);
+  const Rotation<3, FourLanes> before = compose(motion.delta_rotation, of.rotation);
+  const Spin<3, FourLanes> spin = rotate_back(before, motion.spin);
+  const Spin<3, FourLanes> momentum = times(of.inertia, spin);
+  Spin<3, FourLanes> middle = Spin<3, FourLanes>::zero();
+  if (!find_middle(FourLanes(0.5f * h), of, spin, momentum, tumbles, middle)) return false;
+  const Spin<3, FourLanes> turn = FourLanes(h) * (spin + middle);
+  Spin<3, FourLanes> turn_in_world = FourLanes(h) * motion.spin;
   choose(tumbles, rotate(before, turn), turn_in_world);
   if (any(is_large(turn_in_world) | (tumbles & is_large(turn)))) return false;
-  const L square = dot(turn_in_world, turn_in_world);
-  const Rotation<3, L> by = small_rotation_by(turn_in_world, square);
-  turn_lanes_by(by, tumbles | (square.raw != L(0.0f).raw), motion.delta_rotation);
-  const Rotation<3, L> after = compose(motion.delta_rotation, of.rotation);
+  const FourLanes square = dot(turn_in_world, turn_in_world);
+  const Rotation<3, FourLanes> by = small_rotation_by(turn_in_world, square);
+  turn_lanes_by(by, tumbles | (square.raw != FourLanes(0.0f).raw), motion.delta_rotation);
+  const Rotation<3, FourLanes> after = compose(motion.delta_rotation, of.rotation);
   choose(tumbles,
          rotate(by, motion.spin) +
              rotate(after, times(of.inverse_inertia, small_turned_back_change(turn, momentum))),
          motion.spin);
-  motion.delta_position += L(h) * motion.velocity;
+  motion.delta_position += FourLanes(h) * motion.velocity;
   scatter_pose(motion, kAllLanes<4>, slots, motions);
   return true;
 }
