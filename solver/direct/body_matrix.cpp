@@ -217,27 +217,24 @@ static void factor_pivot(const SquareBlock<N>& block, Pivot<N>& pivot) {
   }
 }
 
-/// b L^-T of row i of a block, and c = b D^-1 of that. Not by an inverse of the pivot, whose errors
+/// Replaces b by b L^-T, and sets c = b D^-1 of that. Not by an inverse of the pivot, whose errors
 /// would hide the masses behind a stiff one.
 template <int N>
-static void divide(const Pivot<N>& pivot, int i, SquareBlock<N>& b, SquareBlock<N>& c) {
-  for (int j = 0; j < N; ++j) {
-    Wide left = b.m[i][j];
-    for (int k = 0; k < j; ++k) left -= b.m[i][k] * pivot.lower[j][k];
-    b.m[i][j] = left;
-    c.m[i][j] = left * pivot.inverse[j];
-  }
+static void divide(const Pivot<N>& pivot, SquareBlock<N>& b, SquareBlock<N>& c) {
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < N; ++j) {
+      for (int k = 0; k < j; ++k) b.m[i][j] -= b.m[i][k] * pivot.lower[j][k];
+      c.m[i][j] = b.m[i][j] * pivot.inverse[j];
+    }
 }
-/// c L^-1 of row i: with what `divide` has made, the block over the pivot.
+/// b = c L^-1: with what `divide` has made, the block over the pivot.
 template <int N>
-static void divide_by_lower(const Pivot<N>& pivot, int i, const SquareBlock<N>& c,
-                            SquareBlock<N>& block) {
-  Wide row[N];
-  for (int j = N; j-- > 0;) {
-    row[j] = c.m[i][j];
-    for (int k = j + 1; k < N; ++k) row[j] -= row[k] * pivot.lower[k][j];
-    block.m[i][j] = row[j];
-  }
+static void divide_by_lower(const Pivot<N>& pivot, const SquareBlock<N>& c, SquareBlock<N>& b) {
+  for (int i = 0; i < N; ++i)
+    for (int j = N; j-- > 0;) {
+      b.m[i][j] = c.m[i][j];
+      for (int k = j + 1; k < N; ++k) b.m[i][j] -= b.m[i][k] * pivot.lower[k][j];
+    }
 }
 /// Replaces v by what the pivot answers to it.
 template <int N, class T>
@@ -261,48 +258,37 @@ static void subtract_product(const SquareBlock<N>& a, const SquareBlock<N>& b, S
     }
 }
 
-/// Row i of the same of a product that is symmetric, of which only the lower triangle is read.
+/// The same of a product that is symmetric, of which only the lower triangle is read.
 template <int N>
-static void subtract_square(const SquareBlock<N>& a, const SquareBlock<N>& b, int i,
-                            SquareBlock<N>& c) {
-  for (int j = 0; j <= i; ++j) {
-    Wide sum = a.m[i][0] * b.m[j][0];
-    for (int k = 1; k < N; ++k) sum += a.m[i][k] * b.m[j][k];
-    c.m[i][j] -= sum;
-  }
-}
-
-/// A block as it is, or transposed.
-template <int N>
-static SquareBlock<N> facing(const SquareBlock<N>& block, bool transposed) {
-  if (!transposed) return block;
-  SquareBlock<N> turned;
+static void subtract_square(const SquareBlock<N>& a, const SquareBlock<N>& b, SquareBlock<N>& c) {
   for (int i = 0; i < N; ++i)
-    for (int j = 0; j < N; ++j) turned.m[i][j] = block.m[j][i];
-  return turned;
+    for (int j = 0; j <= i; ++j) {
+      Wide sum = a.m[i][0] * b.m[j][0];
+      for (int k = 1; k < N; ++k) sum += a.m[i][k] * b.m[j][k];
+      c.m[i][j] -= sum;
+    }
+}
+template <int N>
+static void transpose(SquareBlock<N>& block) {
+  for (int i = 0; i < N; ++i)
+    for (int j = 0; j < i; ++j) std::swap(block.m[i][j], block.m[j][i]);
 }
 
-/// Works on copies: the compiler cannot know that blocks in memory are different ones, and would
-/// read the pivot anew for each number.
 template <int D>
 void BodyMatrix<D>::eliminate_numbers(const Step& step, const Step& next) {
-  const Pivot<kFreedoms> pivot = pivots_[static_cast<std::size_t>(step.node)];
+  const Pivot<kFreedoms>& pivot = pivots_[static_cast<std::size_t>(step.node)];
   const auto count = static_cast<std::size_t>(next.entries - step.entries);
   if (column_.size() < count) column_.resize(count);
   std::size_t target = static_cast<std::size_t>(step.targets);
   for (std::size_t i = 0; i < count; ++i) {
     const Entry& entry = entries_[static_cast<std::size_t>(step.entries) + i];
     Block& block = beside(entry.block);
-    Block& diagonal_block = diagonal(entry.node);
-    Block b = facing(block, entry.transposed);
-    Block c;
-    for (int r = 0; r < kFreedoms; ++r) {
-      divide(pivot, r, b, c);
-      subtract_square(b, c, r, diagonal_block);
-      divide_by_lower(pivot, r, c, block);
-    }
-    for (std::size_t j = 0; j < i; ++j) subtract_product(b, column_[j], beside(targets_[target++]));
-    if (i + 1 < count) column_[i] = c;
+    if (entry.transposed) transpose(block);
+    divide(pivot, block, column_[i]);
+    for (std::size_t j = 0; j < i; ++j)
+      subtract_product(block, column_[j], beside(targets_[target++]));
+    subtract_square(block, column_[i], diagonal(entry.node));
+    divide_by_lower(pivot, column_[i], block);
   }
 }
 
@@ -317,29 +303,33 @@ void BodyMatrix<D>::factor(Range steps) {
 
 template <int D>
 template <class T>
-void BodyMatrix<D>::go_forward(Range steps, std::span<Vec<kFreedoms, T>> by_node) const {
+void BodyMatrix<D>::solve(Range steps, ByNode<T>& by_node) const {
+  solve_lower(steps, by_node);
+  solve_upper(steps, by_node);
+}
+
+template <int D>
+template <class T>
+void BodyMatrix<D>::solve_lower(Range steps, ByNode<T>& by_node) const {
   for (int s = steps.begin; s < steps.end; ++s) {
     const Step& step = steps_[static_cast<std::size_t>(s)];
-    const Vec<kFreedoms, T> from = by_node[static_cast<std::size_t>(step.node)];
+    const Vec<kFreedoms, T>& from = by_node[static_cast<std::size_t>(step.node)];
     for (int e = step.entries; e < steps_[static_cast<std::size_t>(s) + 1].entries; ++e) {
       const Entry& entry = entries_[static_cast<std::size_t>(e)];
       const Block& lower = beside_[static_cast<std::size_t>(entry.block)];
       Vec<kFreedoms, T>& to = by_node[static_cast<std::size_t>(entry.node)];
-      for (int i = 0; i < kFreedoms; ++i) {
-        T left = to[i];
-        for (int j = 0; j < kFreedoms; ++j) left -= lower.m[i][j] * from[j];
-        to[i] = left;
-      }
+      for (int i = 0; i < kFreedoms; ++i)
+        for (int j = 0; j < kFreedoms; ++j) to[i] -= lower.m[i][j] * from[j];
     }
   }
 }
 
 template <int D>
 template <class T>
-void BodyMatrix<D>::go_back(Range steps, std::span<Vec<kFreedoms, T>> by_node) const {
+void BodyMatrix<D>::solve_upper(Range steps, ByNode<T>& by_node) const {
   for (int s = steps.end; s-- > steps.begin;) {
     const Step& step = steps_[static_cast<std::size_t>(s)];
-    Vec<kFreedoms, T> to = by_node[static_cast<std::size_t>(step.node)];
+    Vec<kFreedoms, T>& to = by_node[static_cast<std::size_t>(step.node)];
     divide(pivots_[static_cast<std::size_t>(step.node)], to);
     for (int e = step.entries; e < steps_[static_cast<std::size_t>(s) + 1].entries; ++e) {
       const Entry& entry = entries_[static_cast<std::size_t>(e)];
@@ -348,40 +338,21 @@ void BodyMatrix<D>::go_back(Range steps, std::span<Vec<kFreedoms, T>> by_node) c
       for (int i = 0; i < kFreedoms; ++i)
         for (int j = 0; j < kFreedoms; ++j) to[j] -= lower.m[i][j] * from[i];
     }
-    by_node[static_cast<std::size_t>(step.node)] = to;
   }
-}
-
-template <int D>
-void BodyMatrix<D>::solve_lower(Range steps, std::span<Vector> by_node) const {
-  go_forward(steps, by_node);
-}
-template <int D>
-void BodyMatrix<D>::solve_lower(Range steps, std::span<VectorPair> by_node) const {
-  go_forward(steps, by_node);
-}
-
-template <int D>
-void BodyMatrix<D>::solve_upper(Range steps, std::span<Vector> by_node) const {
-  go_back(steps, by_node);
-}
-template <int D>
-void BodyMatrix<D>::solve_upper(Range steps, std::span<VectorPair> by_node) const {
-  go_back(steps, by_node);
-}
-
-template <int D>
-void BodyMatrix<D>::solve(Range steps, std::span<Vector> by_node) const {
-  go_forward(steps, by_node);
-  go_back(steps, by_node);
-}
-template <int D>
-void BodyMatrix<D>::solve(Range steps, std::span<VectorPair> by_node) const {
-  go_forward(steps, by_node);
-  go_back(steps, by_node);
 }
 
 template class BodyMatrix<2>;
 template class BodyMatrix<3>;
+
+template <int D, class T>
+struct InstantiateSolve {
+  static constexpr auto kSolve = &BodyMatrix<D>::template solve<T>;
+  static constexpr auto kLower = &BodyMatrix<D>::template solve_lower<T>;
+  static constexpr auto kUpper = &BodyMatrix<D>::template solve_upper<T>;
+};
+template struct InstantiateSolve<2, Wide>;
+template struct InstantiateSolve<2, WidePair>;
+template struct InstantiateSolve<3, Wide>;
+template struct InstantiateSolve<3, WidePair>;
 
 }  // namespace cycloid::solver

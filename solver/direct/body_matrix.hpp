@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <span>
 #include <vector>
 
 #include "solver/dim.hpp"
@@ -39,6 +38,8 @@ class BodyMatrix {
   using Block = SquareBlock<kFreedoms>;
   using Vector = Vec<kFreedoms, Wide>;
   using VectorPair = Vec<kFreedoms, WidePair>;
+  template <class T>
+  using ByNode = std::vector<Vec<kFreedoms, T>>;
 
   /// An empty pattern of this many nodes. Keeps its memory from call to call.
   void begin(int nodes);
@@ -70,16 +71,16 @@ class BodyMatrix {
 
   /// Factors steps, whose blocks are summed up. @pre the steps of the island before are factored.
   void factor(Range steps);
-  /// Replaces the right-hand sides of these steps' nodes, one or two at once, by the solution.
-  /// @pre factor(steps).
-  void solve(Range steps, std::span<Vector> by_node) const;
-  void solve(Range steps, std::span<VectorPair> by_node) const;
+  /// Replaces the right-hand sides of these steps' nodes by the solution: T is Wide, or WidePair
+  /// for two of them at once. @pre factor(steps).
+  template <class T>
+  void solve(Range steps, ByNode<T>& by_node) const;
   /// Its two halves: forward through the steps, and back through them. @pre of `solve_upper`: the
   /// steps behind have been gone back through.
-  void solve_lower(Range steps, std::span<Vector> by_node) const;
-  void solve_lower(Range steps, std::span<VectorPair> by_node) const;
-  void solve_upper(Range steps, std::span<Vector> by_node) const;
-  void solve_upper(Range steps, std::span<VectorPair> by_node) const;
+  template <class T>
+  void solve_lower(Range steps, ByNode<T>& by_node) const;
+  template <class T>
+  void solve_upper(Range steps, ByNode<T>& by_node) const;
 
  private:
   /// A node's neighbour and the block between them; a list in `links_`.
@@ -120,10 +121,6 @@ class BodyMatrix {
                    const std::vector<Block>& from_beside, std::vector<Block>& to_diagonal,
                    std::vector<Block>& to_beside) const;
   void eliminate_numbers(const Step& step, const Step& next);
-  template <class T>
-  void go_forward(Range steps, std::span<Vec<kFreedoms, T>> by_node) const;
-  template <class T>
-  void go_back(Range steps, std::span<Vec<kFreedoms, T>> by_node) const;
 
   std::vector<int> first_link_;  ///< By node.
   std::vector<int> degree_;

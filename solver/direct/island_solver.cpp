@@ -199,8 +199,7 @@ void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
     push_row<D>(group, row, 0, -row->stiffness * row->closing, correction);
   }
   if (!island.corrects) return;
-  matrix.solve_lower(island.contact_steps,
-                     correction);  // Before them there is nothing.
+  matrix.solve_lower(island.contact_steps, correction);  // Before them there is nothing.
   matrix.solve_upper(island.steps, correction);
   const Wide share = share_of_correction(island, push_speed_max);
   for (int n = island.nodes.begin; n < island.nodes.end && share < 1.0; ++n)

@@ -36,7 +36,7 @@ struct IslandRows {
   Wide friction;
   Vec<D, Wide> arm_a;  ///< Of a point from the node; 0 where it cannot turn, or there is no point.
   Vec<D, Wide> arm_b;
-  int points = 0;
+  int points = 0;  ///< Of the rows, the first ones.
 };
 
 /// A contact or a rigid joint between the bodies of two slots.
@@ -75,8 +75,7 @@ struct IslandWork {
 /// Slots or places sorted by their island, those of one ascending. Made when it is asked for.
 struct ByIsland {
   std::vector<std::uint32_t> numbers;
-  std::vector<std::uint32_t>
-      first;  ///< By island, where its numbers begin; the next one's are the end.
+  std::vector<std::uint32_t> first;  ///< By island, into `numbers`; that of the next is its end.
 
   std::span<const std::uint32_t> of(std::size_t island) const {
     return std::span(numbers).subspan(first[island], first[island + 1] - first[island]);
@@ -109,6 +108,7 @@ class IslandSolver {
  public:
   static constexpr int kFreedoms = Dim<D>::kFreedoms;
   using Vector = typename BodyMatrix<D>::Vector;
+  using VectorPair = typename BodyMatrix<D>::VectorPair;
 
   /// A group of bodies, joined by rows, that is solved by itself.
   struct Island {
@@ -234,10 +234,9 @@ class IslandSolver {
   std::vector<Vector> solution_;  ///< By node.
   std::vector<Vector> kept_;      ///< By node: what a solve of the contacts begins with.
   std::vector<Vector> momentum_;
-  std::vector<Vector> guessed_;  ///< By node: velocity that the first guess is of.
-  std::vector<typename BodyMatrix<D>::VectorPair>
-      both_;  ///< By node: of what is missed, and of closing.
-  std::vector<typename BodyMatrix<D>::VectorPair> kept_both_;
+  std::vector<Vector> guessed_;   ///< By node: velocity that the first guess is of.
+  std::vector<VectorPair> both_;  ///< By node: of what is missed, and of closing.
+  std::vector<VectorPair> kept_both_;
 };
 
 }  // namespace cycloid::solver
