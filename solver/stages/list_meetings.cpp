@@ -123,6 +123,17 @@ static bool stays_in_boxes(const StepContext<D>& context, const Body<D>& body,
   return true;
 }
 
+/// Finds the way of a shape of a fast body.
+template <int D>
+static void find_way(const StepContext<D>& context, const WorldState<D>& state, std::uint32_t shape,
+                     StepScratch<D>& scratch) {
+  const std::uint32_t slot = state.shapes[shape].body;
+  const Body<D>& body = state.bodies[slot];
+  scratch.ways[shape] =
+      bounds_of_way(state.shapes[shape], body, sweep_of(context, state, scratch, slot),
+                    stop_distance(context.tuning, body.thickness));
+}
+
 /// Sorts the shapes of fast bodies by where all that they may meet is listed: among the pairs of
 /// this tick where their way lies in their box, else among the candidates where it lies in their
 /// fat box; else they will search.
@@ -139,13 +150,12 @@ static void mark_ways(const StepContext<D>& context, const WorldState<D>& state,
     const std::uint32_t slot = scratch.fast_bodies[place].slot;
     const Body<D>& body = state.bodies[slot];
     const Motion<D>& motion = scratch.motions[slot];
-    const float target = stop_distance(context.tuning, body.thickness);
-    const bool stays = stays_in_boxes(context, body, motion, target);
+    const bool stays =
+        stays_in_boxes(context, body, motion, stop_distance(context.tuning, body.thickness));
     for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
       scratch.fast_of_shape[s] = place + 1;
       if (stays && cache.active[s] != 0) continue;
-      scratch.ways[s] =
-          bounds_of_way(state.shapes[s], body, sweep_of(context, state, scratch, slot), target);
+      find_way(context, state, s, scratch);
       scratch.way_is[s] = WayIs::kListed;
       if (cache.active[s] != 0 && lies_in(scratch.ways[s], cache.boxes[s])) continue;
       if (cache.active[s] != 0 && lies_in(scratch.ways[s], cache.fat.box(s)))
@@ -169,14 +179,8 @@ static void find_ways_of_pairs(const StepContext<D>& context, const WorldState<D
       wanted.push_back(s);
     }
   workers.parallel_for(static_cast<int>(wanted.size()), kPairGrain, [&](Range range) {
-    for (int i = range.begin; i < range.end; ++i) {
-      const std::uint32_t s = wanted[static_cast<std::size_t>(i)];
-      const std::uint32_t slot = state.shapes[s].body;
-      const Body<D>& body = state.bodies[slot];
-      scratch.ways[s] =
-          bounds_of_way(state.shapes[s], body, sweep_of(context, state, scratch, slot),
-                        stop_distance(context.tuning, body.thickness));
-    }
+    for (int i = range.begin; i < range.end; ++i)
+      find_way(context, state, wanted[static_cast<std::size_t>(i)], scratch);
   });
 }
 
