@@ -83,6 +83,7 @@ struct alignas(4 * kLaneCount<W>) Lanes {
 
   friend Mask operator<(Lanes a, Lanes b) { return a.raw < b.raw; }
   friend Mask operator>(Lanes a, Lanes b) { return a.raw > b.raw; }
+  friend Mask operator==(Lanes a, Lanes b) { return a.raw == b.raw; }
   friend Lanes max(Lanes a, Lanes b) { return Lanes(a.raw > b.raw ? a.raw : b.raw); }
   friend Lanes min(Lanes a, Lanes b) { return Lanes(a.raw < b.raw ? a.raw : b.raw); }
   friend Lanes select(Mask mask, Lanes yes, Lanes no) { return Lanes(mask ? yes.raw : no.raw); }

@@ -1,5 +1,5 @@
 #include "solver/collision/collide.hpp"
-#include "solver/collision/four_cornered.hpp"
+#include "solver/collision/few_cornered.hpp"
 #include "solver/collision/hull.hpp"
 
 namespace cycloid::solver {
@@ -8,8 +8,10 @@ static bool is_outline(ShapeKind kind) {
   return kind == ShapeKind::kPolygon || kind == ShapeKind::kCapsule || kind == ShapeKind::kSegment;
 }
 
-static bool has_four_corners(const Shape<2>& shape) {
-  return shape.kind == ShapeKind::kPolygon && shape.vertex_count == 4;
+/// Whether it is one of the outlines that are collided in lanes.
+static bool has_few_corners(const Shape<2>& shape) {
+  return shape.kind == ShapeKind::kCapsule ||
+         (shape.kind == ShapeKind::kPolygon && shape.vertex_count <= 4);
 }
 
 /// Collides pair after pair. What a pair has of its shape a alone is made once for pairs in a row
@@ -35,11 +37,11 @@ class OneByOne {
   Hull hull_;
 };
 
-static Manifold<2> manifold_of(const ClippedEdges& clipped, const PlacedPair<2>& pair) {
+static Manifold<2> manifold_of(const FewCorneredPoints& found, const PlacedPair<2>& pair) {
   Manifold<2> manifold;
-  manifold.normal = {{clipped.normal[0], clipped.normal[1]}};
+  manifold.normal = {{found.normal[0], found.normal[1]}};
   const Vec<2> a_to_b = pair.pose_b.position - pair.pose_a.position;
-  for (const ClippedEdges::Point& point : clipped.points) {
+  for (const FewCorneredPoints::Point& point : found.points) {
     if (point.separation > pair.margin) continue;
     add_point(Vec<2>{{point.at[0], point.at[1]}}, point.separation,
               static_cast<std::uint32_t>(point.feature), a_to_b, manifold);
@@ -56,22 +58,18 @@ struct Waiting {
 /// As many pairs as there are lanes, or the `used` last ones and then the last one again.
 template <int W>
 static void collide_block(const Collider<2>& collider, const PlacedPair<2>* pairs,
-                          const std::uint32_t* waiting, int used, OneByOne& one_by_one,
-                          Manifold<2>* manifolds) {
+                          const std::uint32_t* waiting, int used, Manifold<2>* manifolds) {
   LaneIndices<W> in_lane;
   for (int lane = 0; lane < kLaneCount<W>; ++lane)
     in_lane[lane] = waiting[lane < used ? lane : used - 1];
-  ClippedEdges clipped[kLaneCount<W>];
-  FourCornered<W>::collide(collider.shapes, pairs, in_lane, clipped);
+  FewCorneredPoints found[kLaneCount<W>];
+  FewCornered<W>::collide(collider.shapes, pairs, in_lane, found);
   for (int lane = 0; lane < used; ++lane) {
     const std::uint32_t pair = in_lane[lane];
-    const auto outcome = static_cast<FourCorneredOutcome>(clipped[lane].outcome);
-    if (outcome == FourCorneredOutcome::kApart)
+    if (found[lane].outcome == static_cast<float>(FewCorneredOutcome::kApart))
       manifolds[pair].point_count = 0;
-    else if (outcome == FourCorneredOutcome::kClipped)
-      manifolds[pair] = manifold_of(clipped[lane], pairs[pair]);
     else
-      manifolds[pair] = one_by_one(collider, pairs[pair]);
+      manifolds[pair] = manifold_of(found[lane], pairs[pair]);
   }
 }
 
@@ -87,12 +85,12 @@ static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* p
     // What would leave half of the sixteen lanes empty takes as long in eight.
     if (W == kAvx512Lanes && left <= kLaneCount<kAvx2Lanes>) {
       if (4 * left <= kLaneCount<kAvx2Lanes>) break;
-      collide_block<kAvx2Lanes>(collider, pairs, next, left, one_by_one, manifolds);
+      collide_block<kAvx2Lanes>(collider, pairs, next, left, manifolds);
       return;
     }
     const int used = left < kLaneCount<W> ? left : kLaneCount<W>;
     if (4 * used <= kLaneCount<W>) break;
-    collide_block<W>(collider, pairs, next, used, one_by_one, manifolds);
+    collide_block<W>(collider, pairs, next, used, manifolds);
     begin += used;
   }
   for (int i = begin; i < waiting.count; ++i)
@@ -104,8 +102,8 @@ void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>*
   OneByOne one_by_one;
   Waiting waiting;
   for (int i = 0; i < count; ++i) {
-    const bool waits = lanes != 1 && has_four_corners(shapes[pairs[i].shape_a]) &&
-                       has_four_corners(shapes[pairs[i].shape_b]);
+    const bool waits = lanes != 1 && has_few_corners(shapes[pairs[i].shape_a]) &&
+                       has_few_corners(shapes[pairs[i].shape_b]);
     if (waits)
       waiting.pairs[waiting.count++] = static_cast<std::uint32_t>(i);
     else

@@ -18,12 +18,13 @@ static float drawn(std::mt19937& random, float from, float to) {
   return from + 0.25f * static_cast<float>(random() % static_cast<unsigned>(quarters + 1));
 }
 
-/// A box, a lozenge, a trapezium, a polygon of five corners or a capsule; some are rounded.
+/// A box, a lozenge, a trapezium, a triangle, a polygon of five corners or a capsule; some are
+/// rounded.
 static ShapeDef<2> drawn_shape(std::mt19937& random) {
   const float x = drawn(random, 0.25f, 1.5f);
   const float y = drawn(random, 0.25f, 1.5f);
   ShapeDef<2> shape = box(x, y);
-  switch (random() % 8) {
+  switch (random() % 9) {
     case 0:
       shape.points = {{{-x, 0.0f}}, {{0.0f, -y}}, {{x, 0.0f}}, {{0.0f, y}}};
       break;
@@ -34,6 +35,10 @@ static ShapeDef<2> drawn_shape(std::mt19937& random) {
       shape.points = {{{-x, -y}}, {{x, -y}}, {{x, y}}, {{0.0f, 1.5f * y}}, {{-x, y}}};
       break;
     case 3:
+      shape.points = {{{-x, -y}}, {{x, -y}}, {{0.25f * x, y}}};
+      break;
+    case 4:
+    case 5:
       shape = capsule(x, y);
       break;
     default:
@@ -66,6 +71,11 @@ static Crowd crowd(std::mt19937& random, int count) {
   return made;
 }
 
+static bool both_are_capsules(const Crowd& crowd, const PlacedPair<2>& pair) {
+  return crowd.shapes[pair.shape_a].kind == ShapeKind::kCapsule &&
+         crowd.shapes[pair.shape_b].kind == ShapeKind::kCapsule;
+}
+
 static void expect_same_bits(const Manifold<2>& expected, const Manifold<2>& found) {
   ASSERT_EQ(expected.point_count, found.point_count);
   if (expected.point_count == 0) return;
@@ -83,10 +93,11 @@ static std::vector<int> widths() {
   return widths;
 }
 
-TEST(FourCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
+TEST(FewCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
   std::mt19937 random(20261122);
   std::set<std::uint32_t> counts;
   std::set<std::uint32_t> features;
+  std::set<std::uint32_t> of_capsules;
   for (int round = 0; round < 2000; ++round) {
     const int count = 1 + static_cast<int>(random() % kPairGrain);
     const Crowd made = crowd(random, count);
@@ -96,7 +107,8 @@ TEST(FourCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
                                  pair.pose_b, pair.margin, {}));
       counts.insert(expected.back().point_count);
       for (std::uint32_t i = 0; i < expected.back().point_count; ++i)
-        features.insert(expected.back().points[i].feature);
+        (both_are_capsules(made, pair) ? of_capsules : features)
+            .insert(expected.back().points[i].feature);
     }
     for (const int lanes : widths()) {
       std::vector<Manifold<2>> found(made.pairs.size());
@@ -114,6 +126,9 @@ TEST(FourCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
     const std::uint32_t pair = (edge_or_corner / 4) << 4 | (edge_or_corner % 4) << 1;
     for (const std::uint32_t feature : {pair, pair | 1u, pair | 0x400u})
       EXPECT_TRUE(features.contains(feature)) << feature;
+    if (edge_or_corner / 4 > 1 || edge_or_corner % 4 > 1) continue;
+    for (const std::uint32_t feature : {pair, pair | 1u, pair | 0x400u})
+      EXPECT_TRUE(of_capsules.contains(feature)) << feature;
   }
 }
 

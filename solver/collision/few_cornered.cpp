@@ -1,0 +1,10 @@
+#include "solver/collision/few_cornered_lanes.hpp"
+
+namespace cycloid::solver {
+
+template struct FewCornered<1>;
+template struct FewCornered<4>;
+template struct FewCornered<8>;
+template struct FewCornered<16>;
+
+}  // namespace cycloid::solver
