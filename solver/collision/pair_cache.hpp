@@ -34,7 +34,7 @@ Bounds<D> along(Bounds<D> box, const Vec<D>& flight) {
 
 /// How far a fat box reaches beyond the box: a share of its size, and the flight of some ticks.
 /// More makes looks rarer and candidates more.
-inline constexpr float kFatShare = 0.1f;
+inline constexpr float kFatShare = 0.03f;
 inline constexpr float kFatTicks = 10.0f;
 
 /// @param flight  Of a tick, m.
