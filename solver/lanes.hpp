@@ -1,6 +1,9 @@
 #pragma once
 
 #include <cstring>
+#ifdef CYCLOID_AVX512_UNIT
+#include <immintrin.h>
+#endif
 
 #include "solver/arithmetic.hpp"
 
@@ -88,6 +91,12 @@ struct alignas(4 * kLaneCount<W>) Lanes {
   friend Lanes min(Lanes a, Lanes b) { return Lanes(a.raw < b.raw ? a.raw : b.raw); }
   friend Lanes select(Mask mask, Lanes yes, Lanes no) { return Lanes(mask ? yes.raw : no.raw); }
   friend Lanes sqrt(Lanes a) {
+#ifdef CYCLOID_AVX512_UNIT
+    // Compiled without the vectoriser, which elsewhere makes one instruction of the loop. Masked,
+    // because GCC 12 warns of what the other one leaves undefined.
+    if constexpr (W == kAvx512Lanes)
+      return Lanes(static_cast<Raw>(_mm512_maskz_sqrt_ps(0xffff, a.raw)));
+#endif
     for (int lane = 0; lane < kLaneCount<W>; ++lane) a.raw[lane] = __builtin_sqrtf(a.raw[lane]);
     return a;
   }
