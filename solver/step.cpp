@@ -84,16 +84,15 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
 }
 
 /// From the blocks of contacts on, in lanes of width W.
-/// @param lanes  The width that is asked for, of joints too; 0 leaves it to what they are.
 template <int D, int W>
-static void solve_contacts(int lanes, const StepContext<D>& context, const WorldState<D>& state,
+static void solve_contacts(const StepContext<D>& context, const WorldState<D>& state,
                            Workers& workers, StepScratch<D>& scratch) {
   const Tracer<D> traced{state, scratch, &read_blocks<D, W>};
   prepare_contacts<D, W>(context, state, workers, scratch);
   prepare_islands<D, W>(context, scratch);
   const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
   scratch.substeps = paced.tuning.substeps;
-  prepare_pins(lanes, paced, state, scratch);
+  prepare_pins(paced, state, scratch);
   traced(Phase::kPrepare);
   solve_substeps<D, W>(paced, state, traced, workers, scratch);
   store_pins(scratch);
@@ -113,30 +112,30 @@ static int blocks_of(const Coloring& coloring, int width) {
 }
 
 template <int D>
-static void solve_in_lanes(int lanes, const StepContext<D>& context, const WorldState<D>& state,
+static void solve_in_lanes(const StepContext<D>& context, const WorldState<D>& state,
                            Workers& workers, StepScratch<D>& scratch) {
   const auto blocks = [&](int width) { return blocks_of(scratch.contact_coloring, width); };
-  switch (lanes == 0 ? width_that_saves(blocks) : in_best_set(lanes)) {
+  switch (context.lanes == 0 ? width_that_saves(blocks) : in_best_set(context.lanes)) {
     case 1:
-      return solve_contacts<D, 1>(lanes, context, state, workers, scratch);
+      return solve_contacts<D, 1>(context, state, workers, scratch);
     case 8:
-      return solve_contacts<D, 8>(lanes, context, state, workers, scratch);
+      return solve_contacts<D, 8>(context, state, workers, scratch);
     case 16:
-      return solve_contacts<D, 16>(lanes, context, state, workers, scratch);
+      return solve_contacts<D, 16>(context, state, workers, scratch);
     case kAvx2Lanes:
-      return solve_contacts<D, kAvx2Lanes>(lanes, context, state, workers, scratch);
+      return solve_contacts<D, kAvx2Lanes>(context, state, workers, scratch);
     case kAvx512Lanes:
-      return solve_contacts<D, kAvx512Lanes>(lanes, context, state, workers, scratch);
+      return solve_contacts<D, kAvx512Lanes>(context, state, workers, scratch);
     default:
-      return solve_contacts<D, 4>(lanes, context, state, workers, scratch);
+      return solve_contacts<D, 4>(context, state, workers, scratch);
   }
 }
 
 /// What follows once the contacts are known, read aloud. With World::step the only place that knows
 /// the order of the stages.
 template <int D>
-static void solve_tick(int lanes, const StepContext<D>& context, const WorldState<D>& state,
-                       Workers& workers, StepScratch<D>& scratch) {
+static void solve_tick(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                       StepScratch<D>& scratch) {
   const Tracer<D> traced{state, scratch};
   wake_islands(context, state, scratch);
   traced(Phase::kIslands);
@@ -144,7 +143,7 @@ static void solve_tick(int lanes, const StepContext<D>& context, const WorldStat
   traced(Phase::kColors);
   prepare_bodies(context, state, workers, scratch);
   prepare_joints(context, state, scratch);
-  solve_in_lanes(lanes, context, state, workers, scratch);
+  solve_in_lanes(context, state, workers, scratch);
 }
 
 /// Rows of a contact between two materials.
@@ -261,8 +260,9 @@ Error World<D>::step_in_lanes() {
     if (joint.kind == JointKind::kUser &&
         find_rows_function<D>(kept_->user_rows, joint.user_kind) == nullptr)
       return {Code::kInvalid, "user_kind"};
-  const StepContext<D> context =
+  StepContext<D> context =
       make_step_context(state_.header.tick_s, state_.header.gravity, state_.header.tuning);
+  context.lanes = lanes_;
   StepLoan<D> loan(*step_memory_, *kept_);
   StepScratch<D>& scratch = loan.scratch();
   const Tracer<D> traced{state_, scratch};
@@ -270,7 +270,7 @@ Error World<D>::step_in_lanes() {
   const bool paired = find_pairs(context, state_, *workers_, scratch);
   traced(Phase::kPairs);
   if (paired) {
-    collide_pairs(widest_lanes(lanes_), context, state_, *workers_, scratch);
+    collide_pairs(context, state_, *workers_, scratch);
     if (is_written(scratch.trace)) take_in_resting(state_, scratch);
     traced(Phase::kCollide);  // Else there is nothing of this tick to look at.
   }
@@ -278,7 +278,7 @@ Error World<D>::step_in_lanes() {
     state_.header.fault = {state_.header.tick + 1, {kNone, 0}, kFaultContacts};
     return {Code::kFaulted, "limits.contacts"};
   }
-  solve_tick(lanes_, context, state_, *workers_, scratch);
+  solve_tick(context, state_, *workers_, scratch);
   if (const Fault fault = find_fault(state_, *workers_, scratch); fault.field != kFaultNone) {
     state_.header.fault = fault;
     return {Code::kFaulted, fault_field_name(fault.field), static_cast<int>(fault.body.index)};

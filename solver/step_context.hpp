@@ -19,6 +19,7 @@ struct StepContext {
   Softness pseudo;   ///< Of pseudo-velocity sweeps, which are rigid and biased.
   Softness motor;    ///< Of position motors without a frequency of their own.
   float slop;        ///< m of overlap that velocity sweeps leave alone.
+  int lanes = 0;     ///< Width that is asked for; 0: what suits. Changes no bit.
   bool odd = false;  ///< Of the number of the tick and the substep in sum: see point_in_turn.
 };
 

@@ -1,6 +1,7 @@
 #include <algorithm>
 
 #include "solver/collision/collide.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/stages/active_contacts.hpp"
 #include "solver/stages/live_contact.hpp"
 #include "solver/stages/stages.hpp"
@@ -161,10 +162,10 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
 /// the old ones in the same order. One thread lists them at once; of several each takes chunks of
 /// the pairs, whose lists are joined.
 template <int D>
-void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
-                   Workers& workers, StepScratch<D>& scratch) {
+void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                   StepScratch<D>& scratch) {
   constexpr int kChunk = 8 * kPairGrain;
-  const Collider<D> collider{state.shapes.data(), state.polyhedra, lanes};
+  const Collider<D> collider{state.shapes.data(), state.polyhedra, widest_lanes(context.lanes)};
   const int count = static_cast<int>(scratch.pairs.size());
   clear<D>(scratch);
   list_active_contacts(state, scratch);
@@ -183,9 +184,7 @@ void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>
   join_lists(chunks, workers, scratch);
 }
 
-template void collide_pairs(int, const StepContext<2>&, const WorldState<2>&, Workers&,
-                            StepScratch<2>&);
-template void collide_pairs(int, const StepContext<3>&, const WorldState<3>&, Workers&,
-                            StepScratch<3>&);
+template void collide_pairs(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);
+template void collide_pairs(const StepContext<3>&, const WorldState<3>&, Workers&, StepScratch<3>&);
 
 }  // namespace cycloid::solver

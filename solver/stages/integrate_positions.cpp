@@ -1,14 +1,11 @@
-#include "solver/constraints/motion_lanes.hpp"
-#include "solver/constraints/trig_lanes.hpp"
+#include <span>
+
+#include "solver/bodies/body_kernels.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/stages/turn_freely.hpp"
 
 namespace cycloid::solver {
-
-/// In the plane a free body keeps its spin.
-static void turn_freely(float h, const Body<2>&, Motion<2>& motion) {
-  turn_by(h * motion.spin, motion);
-}
 
 /// The inverse inertia in the world at the present rotation, where that has changed by more than a
 /// thousandth of a radian in this substep. Kept for a whole tick it would turn a top's joint force
@@ -35,57 +32,74 @@ static void turn_masses(float h, const WorldState<3>& state, std::size_t begin, 
     for (int axis = 0; axis < 3; ++axis) scratch.accelerations[place].rate[3 + axis] = rate[axis];
   }
 }
-/// In the plane nothing does.
-static void turn_masses(float, const WorldState<2>&, std::size_t, std::size_t, StepScratch<2>&) {}
-
 template <int D>
-static void move_by_pseudo_velocities(float h, std::size_t begin, std::size_t end,
-                                      StepScratch<D>& scratch) {
-  for (std::size_t place = begin; place < end; ++place) {
-    const std::uint32_t slot = scratch.awake_bodies[place];
+static void move_by_pseudo_velocities(float h, Range range, StepScratch<D>& scratch) {
+  for (int place = range.begin; place < range.end; ++place) {
+    const std::uint32_t slot = scratch.awake_bodies[static_cast<std::size_t>(place)];
     Motion<D>& motion = scratch.motions[slot];
     motion.delta_position += h * scratch.saved_motions[slot].velocity;
     turn_by(h * scratch.saved_motions[slot].spin, motion);
   }
 }
 
-/// x' = x + h v of four bodies of the plane in lanes, and to the bit as turn_by turns them.
-static bool move_four(float h, const Body<2>*, const LaneIndices<4>& bodies, Motion<2>* motions) {
-  using L = Lanes<4>;
-  MotionLanes<2, 4> motion = gather<2, 4>(motions, bodies);
-  motion.delta_position += L(h) * motion.velocity;
-  const L turn = L(h) * motion.spin[0];
-  Rotation<2, L> by;
-  sin_cos(turn, by[1], by[0]);
-  const Rotation<2, L> turned = compose(by, motion.delta_rotation);
-  const L size = sqrt(dot(turned, turned));
-  const auto has_size = size > L(1.0e-12f);
-  const L inverse = L(1.0f) / select(has_size, size, L(1.0f));
-  const L square = turn * turn;
-  for (int i = 0; i < 2; ++i) {
-    L& q = motion.delta_rotation[i];
-    const L to = select(has_size, inverse * turned[i], q);
-    // What does not turn keeps its bits; what is no number does not.
-    q = select(square > L(0.0f), to, select(square < L(1.0f), q, to));
+/// Moves the bodies of these slots W at a time. What would leave half of the lanes empty goes in
+/// fours.
+template <int W>
+static void move_in_lanes(float h, std::span<const std::uint32_t> slots, Motion<2>* motions) {
+  constexpr std::size_t kLanes = kLaneCount<W>;
+  const std::size_t last = slots.size() % kLanes;
+  const std::size_t wide = 2 * last > kLanes ? slots.size() : slots.size() - last;
+  const auto count = [](std::span<const std::uint32_t> of) { return static_cast<int>(of.size()); };
+  const auto rest = slots.subspan(wide);
+  BodyKernels<W>::move(h, slots.data(), static_cast<int>(wide), motions);
+  if (!rest.empty()) BodyKernels < kLanes<4 ? W : 4>::move(h, rest.data(), count(rest), motions);
+}
+
+static void move_range(const StepContext<2>& context, const WorldState<2>&, Range range,
+                       StepScratch<2>& scratch) {
+  const auto slots = std::span<const std::uint32_t>(scratch.awake_bodies)
+                         .subspan(static_cast<std::size_t>(range.begin),
+                                  static_cast<std::size_t>(range.end - range.begin));
+  Motion<2>* motions = scratch.motions.data();
+  switch (widest_lanes(context.lanes)) {
+    case 1:
+      return move_in_lanes<1>(context.h, slots, motions);
+    case 8:
+      return move_in_lanes<8>(context.h, slots, motions);
+    case 16:
+      return move_in_lanes<16>(context.h, slots, motions);
+    case kAvx2Lanes:
+      return move_in_lanes<kAvx2Lanes>(context.h, slots, motions);
+    case kAvx512Lanes:
+      return move_in_lanes<kAvx512Lanes>(context.h, slots, motions);
+    default:
+      return move_in_lanes<4>(context.h, slots, motions);
   }
-  scatter_pose(motion, kAllLanes<4>, bodies, motions);
-  return true;
 }
 
 /// Moves the four bodies from a place of awake_bodies on, or the one that lies there. @returns the
 /// place behind them.
-template <int D>
-static std::size_t move_some(float h, const WorldState<D>& state, std::size_t place,
-                             std::size_t end, StepScratch<D>& scratch) {
+static std::size_t move_some(float h, const WorldState<3>& state, std::size_t place,
+                             std::size_t end, StepScratch<3>& scratch) {
   const std::uint32_t* slots = scratch.awake_bodies.data() + place;
-  Motion<D>* motions = scratch.motions.data();
+  Motion<3>* motions = scratch.motions.data();
   if (place + 4 <= end &&
       move_four(h, state.bodies.data(), {slots[0], slots[1], slots[2], slots[3]}, motions))
     return place + 4;
-  Motion<D>& motion = motions[slots[0]];
+  Motion<3>& motion = motions[slots[0]];
   motion.delta_position += h * motion.velocity;
   turn_freely(h, state.bodies[slots[0]], motion);
   return place + 1;
+}
+
+static void move_range(const StepContext<3>& context, const WorldState<3>& state, Range range,
+                       StepScratch<3>& scratch) {
+  const auto end = static_cast<std::size_t>(range.end);
+  for (auto i = static_cast<std::size_t>(range.begin); i < end;) {
+    const std::size_t next = move_some(context.h, state, i, end, scratch);
+    turn_masses(context.h, state, i, next, scratch);
+    i = next;
+  }
 }
 
 /// x' = x + h v,  q' = exp(h w) q, at unit length; in space I(q') w' = I(q) w.
@@ -99,13 +113,8 @@ void integrate_positions(const StepContext<D>& context, const WorldState<D>& sta
   const bool pseudo = context.tuning.stabilisation == Stabilisation::kSplitImpulse;
   const auto count = static_cast<int>(scratch.awake_bodies.size());
   workers.parallel_for(count, kBodyGrain, [&](Range range) {
-    const auto end = static_cast<std::size_t>(range.end);
-    for (auto i = static_cast<std::size_t>(range.begin); i < end;) {
-      const std::size_t next = move_some(context.h, state, i, end, scratch);
-      turn_masses(context.h, state, i, next, scratch);
-      if (pseudo) move_by_pseudo_velocities(context.h, i, next, scratch);
-      i = next;
-    }
+    move_range(context, state, range, scratch);
+    if (pseudo) move_by_pseudo_velocities(context.h, range, scratch);
   });
 }
 

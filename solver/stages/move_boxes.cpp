@@ -1,26 +1,92 @@
+#include "solver/bodies/body_kernels.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/stages/in_chunks.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
 
-/// The boxes of a body that can move, and which of its shapes left their fat ones. @returns whether
-/// it took part in the tick before and does not now, or the other way round.
+/// Shapes whose boxes are about to be found.
+struct MovingShapes {
+  static constexpr int kMax = 64;
+  std::uint32_t shapes[kMax];
+  int count = 0;
+};
+
 template <int D>
-static bool move_boxes_of(const StepContext<D>& context, const WorldState<D>& state,
-                          const Body<D>& body, std::uint8_t active, PairCache<D>& cache,
-                          std::vector<std::uint32_t>& leaving) {
+static void find_box(const StepContext<D>& context, const WorldState<D>& state, std::uint32_t shape,
+                     PairCache<D>& cache) {
+  const Body<D>& body = state.bodies[state.shapes[shape].body];
   const Pose<D> pose{body.position, body.rotation};
-  const Vec<D> flight = context.tick_s * body.velocity;
-  bool flips = false;
-  for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
-    flips = flips || cache.active[s] != active;
-    cache.active[s] = active;
-    cache.is_still[s] = active ^ 1;
-    cache.boxes[s] =
-        along(bounds_of(state.shapes[s], pose, context.tuning.speculative_distance), flight);
+  cache.boxes[shape] =
+      along(bounds_of(state.shapes[shape], pose, context.tuning.speculative_distance),
+            context.tick_s * body.velocity);
+}
+
+static void find_boxes(const StepContext<3>& context, const WorldState<3>& state,
+                       const MovingShapes& moving, PairCache<3>& cache) {
+  for (int i = 0; i < moving.count; ++i) find_box(context, state, moving.shapes[i], cache);
+}
+
+/// Those that have few vertices W at a time. What would leave half of the lanes empty goes in
+/// fours.
+template <int W>
+static void find_boxes_in_lanes(const FlyingShape* flying, const MovingShapes& few,
+                                const Shape<2>* of, Bounds<2>* boxes) {
+  constexpr int kLanes = kLaneCount<W>;
+  const int last = few.count % kLanes;
+  const int wide = 2 * last > kLanes ? few.count : few.count - last;
+  BodyKernels<W>::find_boxes(flying, few.shapes, wide, of, boxes);
+  BodyKernels <
+      kLanes<4 ? W : 4>::find_boxes(flying + wide, few.shapes + wide, few.count - wide, of, boxes);
+}
+
+static void find_boxes(const StepContext<2>& context, const WorldState<2>& state,
+                       const MovingShapes& moving, PairCache<2>& cache) {
+  FlyingShape flying[MovingShapes::kMax];
+  MovingShapes few;
+  for (int i = 0; i < moving.count; ++i) {
+    const std::uint32_t s = moving.shapes[i];
+    const Shape<2>& shape = state.shapes[s];
+    if (shape.vertex_count == 0 || shape.vertex_count > 4) {
+      find_box(context, state, s, cache);
+      continue;
+    }
+    const Body<2>& body = state.bodies[shape.body];
+    flying[few.count] = {{body.position, body.rotation},
+                         context.tick_s * body.velocity,
+                         shape.radius + context.tuning.speculative_distance,
+                         static_cast<float>(shape.vertex_count - 1)};
+    few.shapes[few.count++] = s;
+  }
+  const Shape<2>* shapes = state.shapes.data();
+  Bounds<2>* boxes = cache.boxes.data();
+  switch (widest_lanes(context.lanes)) {
+    case 1:
+      return find_boxes_in_lanes<1>(flying, few, shapes, boxes);
+    case 8:
+      return find_boxes_in_lanes<8>(flying, few, shapes, boxes);
+    case 16:
+      return find_boxes_in_lanes<16>(flying, few, shapes, boxes);
+    case kAvx2Lanes:
+      return find_boxes_in_lanes<kAvx2Lanes>(flying, few, shapes, boxes);
+    case kAvx512Lanes:
+      return find_boxes_in_lanes<kAvx512Lanes>(flying, few, shapes, boxes);
+    default:
+      return find_boxes_in_lanes<4>(flying, few, shapes, boxes);
+  }
+}
+
+/// Moves the boxes of these shapes, and lists which left their fat ones. None is left in `moving`.
+template <int D>
+static void move_boxes_of(const StepContext<D>& context, const WorldState<D>& state,
+                          MovingShapes& moving, PairCache<D>& cache,
+                          std::vector<std::uint32_t>& leaving) {
+  find_boxes(context, state, moving, cache);
+  for (int i = 0; i < moving.count; ++i) {
+    const std::uint32_t s = moving.shapes[i];
     if (!cache.fat.contains(s) || !lies_in(cache.boxes[s], cache.fat.box(s))) leaving.push_back(s);
   }
-  return flips;
+  moving.count = 0;
 }
 
 /// All bodies are to be asked whether they take part, where that is not known of the others.
@@ -60,6 +126,7 @@ static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state
   std::uint32_t asleep_before = 0;
   std::uint32_t changes = 0;
   bool flips = false;
+  MovingShapes moving;
   for (int i = range.begin; i < range.end; ++i) {
     const std::uint32_t slot = bodies.to_ask[static_cast<std::size_t>(i)];
     const Body<D>& body = state.bodies[slot];
@@ -73,8 +140,15 @@ static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state
     bodies.has_mass[slot] = has_mass;
     if (!moves || body.first_shape == kNone) continue;
     if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
-    flips = move_boxes_of(context, state, body, active, cache, leaving) || flips;
+    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
+      flips = flips || cache.active[s] != active;
+      cache.active[s] = active;
+      cache.is_still[s] = active ^ 1;
+      moving.shapes[moving.count++] = s;
+      if (moving.count == MovingShapes::kMax) move_boxes_of(context, state, moving, cache, leaving);
+    }
   }
+  move_boxes_of(context, state, moving, cache, leaving);
   tally.asleep.add(asleep);
   tally.asleep_before.add(asleep_before);
   tally.changes.add(changes);

@@ -223,10 +223,10 @@ static int width_of_pins(int lanes, const Pins<D>& pins) {
 /// Reads joints, their rows, bodies and the colouring; writes the blocks of pins and the list of
 /// the other rows. Serial; which pins share a block does not show.
 template <int D>
-void prepare_pins(int lanes, const StepContext<D>& context, const WorldState<D>& state,
+void prepare_pins(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch) {
   sort_rows(context, state, scratch);
-  scratch.pins.lanes = width_of_pins(lanes, scratch.pins);
+  scratch.pins.lanes = width_of_pins(context.lanes, scratch.pins);
   with_blocks(scratch.pins, [&](auto& blocks) { fill_blocks(state, scratch, blocks); });
 }
 
@@ -263,8 +263,8 @@ void store_pins(StepScratch<D>& scratch) {
   });
 }
 
-template void prepare_pins(int, const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);
-template void prepare_pins(int, const StepContext<3>&, const WorldState<3>&, StepScratch<3>&);
+template void prepare_pins(const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);
+template void prepare_pins(const StepContext<3>&, const WorldState<3>&, StepScratch<3>&);
 template void store_pins(StepScratch<2>&);
 template void store_pins(StepScratch<3>&);
 

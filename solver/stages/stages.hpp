@@ -18,8 +18,8 @@ template <int D>
 bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch);
 template <int D>
-void collide_pairs(int lanes, const StepContext<D>& context, const WorldState<D>& state,
-                   Workers& workers, StepScratch<D>& scratch);
+void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                   StepScratch<D>& scratch);
 template <int D>
 void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch);
@@ -35,9 +35,8 @@ void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
 template <int D>
 void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
                     StepScratch<D>& scratch);
-/// @param lanes  The width that is asked for; 0 leaves it to how many pins there are.
 template <int D>
-void prepare_pins(int lanes, const StepContext<D>& context, const WorldState<D>& state,
+void prepare_pins(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch);
 template <int D, int W>
 void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,

@@ -1,0 +1,31 @@
+#pragma once
+
+#include "solver/collision/bounds.hpp"
+#include "solver/motion.hpp"
+#include "solver/transpose.hpp"
+
+namespace cycloid::solver {
+
+/// A shape of the plane on its way through a tick.
+struct alignas(16) FlyingShape {
+  Pose<2> pose;
+  Vec<2> flight;  ///< Of its body in the tick, m.
+  float reach;    ///< Of its box beyond its vertices, m.
+  float last;     ///< Number of its last vertex.
+};
+
+/// What is done to each body of the plane by itself, W of them at a time: the same formulas as for
+/// one, so the same bits. Compiled for each width: body_kernels.cpp, body_kernels_avx2.cpp and
+/// body_kernels_avx512.cpp, from the text in body_lanes.hpp.
+template <int W>
+struct BodyKernels {
+  /// x' = x + h v,  q' = exp(h w) q, at unit length, to the bit as turn_by turns one.
+  static void move(float h, const std::uint32_t* bodies, int count, Motion<2>* motions);
+
+  /// The boxes of shapes: bounds_of, then along the flight. @pre every shape has one to four
+  /// vertices.
+  static void find_boxes(const FlyingShape* flying, const std::uint32_t* shapes, int count,
+                         const Shape<2>* of, Bounds<2>* boxes);
+};
+
+}  // namespace cycloid::solver

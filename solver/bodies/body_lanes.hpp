@@ -1,0 +1,117 @@
+#pragma once
+
+#include <cstddef>
+
+#include "solver/bodies/body_kernels.hpp"
+#include "solver/constraints/motion_lanes.hpp"
+#include "solver/constraints/trig_lanes.hpp"
+
+namespace cycloid::solver {
+
+/// The text of BodyKernels, for the files that compile it and no others. Every function is a
+/// template on W, so that those compiled for one instruction set have names of their own.
+
+template <int W>
+[[gnu::always_inline]] inline void move_lanes(Lanes<W> h, MotionLanes<2, W>& motion) {
+  using L = Lanes<W>;
+  motion.delta_position += h * motion.velocity;
+  const L turn = h * motion.spin[0];
+  Rotation<2, L> by;
+  sin_cos(turn, by[1], by[0]);
+  const Rotation<2, L> turned = compose(by, motion.delta_rotation);
+  const L size = sqrt(dot(turned, turned));
+  const auto has_size = size > L(1.0e-12f);
+  const L inverse = L(1.0f) / select(has_size, size, L(1.0f));
+  const L square = turn * turn;
+  for (int i = 0; i < 2; ++i) {
+    L& q = motion.delta_rotation[i];
+    const L to = select(has_size, inverse * turned[i], q);
+    // What does not turn keeps its bits; what is no number does not.
+    q = select(square > L(0.0f), to, select(square < L(1.0f), q, to));
+  }
+}
+
+template <int W>
+void BodyKernels<W>::move(float h, const std::uint32_t* bodies, int count, Motion<2>* motions) {
+  for (int begin = 0; begin < count; begin += kLaneCount<W>) {
+    LaneIndices<W> in_lane;
+    LaneBits used = 0;
+    for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+      const bool is_used = begin + lane < count;
+      in_lane[lane] = bodies[is_used ? begin + lane : count - 1];
+      if (is_used) used |= LaneBits{1} << lane;
+    }
+    MotionLanes<2, W> motion = gather<2, W>(motions, in_lane);
+    move_lanes<W>(Lanes<W>(h), motion);
+    scatter_quads<0, kPoseQuads<2>>(motion, used, in_lane, motions);
+  }
+}
+
+/// The corners of boxes in lanes.
+template <int W>
+struct BoundsLanes {
+  Vec<2, Lanes<W>> lower;
+  Vec<2, Lanes<W>> upper;
+};
+
+template <int W>
+[[gnu::always_inline]] inline BoundsLanes<W> bounds_in_lanes(const Shape<2>* of,
+                                                             const LaneIndices<W>& shapes,
+                                                             const Rotation<2, Lanes<W>>& rotation,
+                                                             const Vec<2, Lanes<W>>& position,
+                                                             Lanes<W> last) {
+  using L = Lanes<W>;
+  static_assert(offsetof(Geometry<2>, vertices) == 0);
+  BoundsLanes<W> bounds;
+  for (int half = 0; half < 2; ++half) {
+    L xy[4];
+    gather_columns<W>(of, shapes, half, xy);
+    for (int corner = 2 * half; corner < 2 * half + 2; ++corner) {
+      const Vec<2, L> r{{xy[2 * corner - 4 * half], xy[2 * corner - 4 * half + 1]}};
+      const Vec<2, L> vertex = position + rotate(rotation, r);
+      if (corner == 0) {
+        bounds = {vertex, vertex};
+        continue;
+      }
+      const auto is_vertex = last > L(static_cast<float>(corner) - 0.5f);
+      for (int i = 0; i < 2; ++i) {
+        const L at = select(is_vertex, vertex[i], bounds.lower[i]);
+        bounds.lower[i] = min(bounds.lower[i], at);
+        bounds.upper[i] = max(bounds.upper[i], select(is_vertex, vertex[i], bounds.upper[i]));
+      }
+    }
+  }
+  return bounds;
+}
+
+template <int W>
+void BodyKernels<W>::find_boxes(const FlyingShape* flying, const std::uint32_t* shapes, int count,
+                                const Shape<2>* of, Bounds<2>* boxes) {
+  using L = Lanes<W>;
+  static_assert(sizeof(Bounds<2>) == sizeof(Quad) && sizeof(FlyingShape) == 2 * sizeof(Quad));
+  for (int begin = 0; begin < count; begin += kLaneCount<W>) {
+    LaneIndices<W> place;
+    LaneIndices<W> shape;
+    LaneBits used = 0;
+    for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+      const bool is_used = begin + lane < count;
+      place[lane] = static_cast<std::uint32_t>(is_used ? begin + lane : count - 1);
+      shape[lane] = shapes[place[lane]];
+      if (is_used) used |= LaneBits{1} << lane;
+    }
+    L pose[4];
+    L more[4];
+    gather_columns<W>(flying, place, 0, pose);
+    gather_columns<W>(flying, place, 1, more);
+    const BoundsLanes<W> bounds =
+        bounds_in_lanes<W>(of, shape, {{pose[2], pose[3]}}, {{pose[0], pose[1]}}, more[3]);
+    L box[4];
+    for (int i = 0; i < 2; ++i) {
+      box[i] = (bounds.lower[i] - more[2]) + min(more[i], L(0.0f));
+      box[2 + i] = (bounds.upper[i] + more[2]) + max(more[i], L(0.0f));
+    }
+    scatter_columns<W>(box, used, 0, shape, boxes);
+  }
+}
+
+}  // namespace cycloid::solver

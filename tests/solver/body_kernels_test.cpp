@@ -1,0 +1,137 @@
+#include "solver/bodies/body_kernels.hpp"
+
+#include <cstring>
+#include <random>
+#include <vector>
+
+#include "solver/collision/pair_cache.hpp"
+#include "solver/instruction_sets.hpp"
+#include "solver/shapes.hpp"
+#include "tests/solver/world_fixture.hpp"
+
+namespace cycloid::solver {
+
+static float drawn(std::mt19937& random, float most) {
+  return std::uniform_real_distribution<float>(-most, most)(random);
+}
+
+/// Every third does not turn, and some turn far.
+static Motion<2> drawn_motion(std::mt19937& random) {
+  const float angle = drawn(random, 3.0f);
+  const float spin = random() % 3 == 0 ? 0.0f : drawn(random, random() % 4 == 0 ? 900.0f : 5.0f);
+  return {{{drawn(random, 50.0f), drawn(random, 50.0f)}},
+          {{spin}},
+          {{drawn(random, 1.0f), drawn(random, 1.0f)}},
+          {{std::cos(angle), std::sin(angle)}}};
+}
+
+template <int W>
+static void expect_to_move_as_one(const std::vector<Motion<2>>& motions,
+                                  const std::vector<std::uint32_t>& bodies) {
+  constexpr float kStep = 1.0f / 240.0f;
+  std::vector<Motion<2>> expected = motions;
+  for (const std::uint32_t body : bodies) {
+    expected[body].delta_position += kStep * expected[body].velocity;
+    turn_by(kStep * expected[body].spin, expected[body]);
+  }
+  std::vector<Motion<2>> moved = motions;
+  BodyKernels<W>::move(kStep, bodies.data(), static_cast<int>(bodies.size()), moved.data());
+  for (std::size_t i = 0; i < moved.size(); ++i)
+    EXPECT_EQ(std::memcmp(&expected[i], &moved[i], sizeof moved[i]), 0)
+        << "body " << i << " of " << bodies.size() << ", width " << W;
+}
+
+/// A ball, capsule, triangle or polygon of four corners.
+static ShapeDef<2> drawn_shape(std::mt19937& random) {
+  ShapeDef<2> shape = box(1.0f + 0.5f * drawn(random, 1.0f), 1.0f + 0.5f * drawn(random, 1.0f));
+  switch (random() % 4) {
+    case 0:
+      return ball<2>(0.5f + 0.25f * drawn(random, 1.0f));
+    case 1:
+      return capsule(1.0f + 0.5f * drawn(random, 1.0f), 0.25f);
+    case 2:
+      shape.points = {{{-1.0f, -1.0f}}, {{1.0f, -1.0f}}, {{drawn(random, 1.0f), 1.0f}}};
+      break;
+    default:
+      break;
+  }
+  if (random() % 2 == 0) shape.radius = 0.1f;
+  return shape;
+}
+
+struct Flock {
+  std::vector<Shape<2>> shapes;
+  std::vector<std::uint32_t> numbers;
+  std::vector<FlyingShape> flying;
+  std::vector<Bounds<2>> boxes;  ///< By shape: one by one.
+};
+
+static Flock drawn_flock(std::mt19937& random, std::uint32_t count) {
+  constexpr float kMargin = 0.02f;
+  Flock flock;
+  for (std::uint32_t i = 0; i < 2 * count; ++i)
+    EXPECT_TRUE(append_shapes(drawn_shape(random), 0, flock.shapes).ok());
+  flock.boxes.resize(flock.shapes.size());
+  for (std::uint32_t i = 0; i < 2 * count; i += 2) {  // Every second shape lies still.
+    const Shape<2>& shape = flock.shapes[i];
+    const float angle = drawn(random, 3.0f);
+    const Pose<2> pose{{{drawn(random, 9.0f), drawn(random, 9.0f)}},
+                       {{std::cos(angle), std::sin(angle)}}};
+    const Vec<2> flight = {{drawn(random, 1.0f), drawn(random, 1.0f)}};
+    flock.numbers.push_back(i);
+    flock.flying.push_back(
+        {pose, flight, shape.radius + kMargin, static_cast<float>(shape.vertex_count - 1)});
+    flock.boxes[i] = along(bounds_of(shape, pose, kMargin), flight);
+  }
+  return flock;
+}
+
+template <int W>
+static void expect_boxes_as_of_one(const Flock& flock) {
+  std::vector<Bounds<2>> boxes(flock.shapes.size());
+  BodyKernels<W>::find_boxes(flock.flying.data(), flock.numbers.data(),
+                             static_cast<int>(flock.numbers.size()), flock.shapes.data(),
+                             boxes.data());
+  for (std::size_t i = 0; i < boxes.size(); ++i)
+    for (int axis = 0; axis < 2; ++axis) {
+      EXPECT_EQ(flock.boxes[i].lower[axis], boxes[i].lower[axis]) << i << ", width " << W;
+      EXPECT_EQ(flock.boxes[i].upper[axis], boxes[i].upper[axis]) << i << ", width " << W;
+    }
+}
+
+/// Calls act.template operator()<W>() for every width that this processor has.
+template <class Act>
+static void for_each_width(Act&& act) {
+  act.template operator()<1>();
+  act.template operator()<4>();
+  act.template operator()<8>();
+  act.template operator()<16>();
+  if (has_avx2_kernels()) act.template operator()<kAvx2Lanes>();
+  if (has_avx512_kernels()) act.template operator()<kAvx512Lanes>();
+}
+
+TEST(BodyKernels, MoveAnyNumberOfBodiesAsOneByOneAtEveryWidth) {
+  std::mt19937 random(20261125);
+  for (std::uint32_t count = 1; count <= 70; ++count) {
+    std::vector<Motion<2>> motions;
+    std::vector<std::uint32_t> bodies;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      motions.push_back(drawn_motion(random));
+      motions.push_back(drawn_motion(random));  // Every second one is asleep.
+      bodies.push_back(2 * i + 1);
+    }
+    for_each_width([&]<int W>() { expect_to_move_as_one<W>(motions, bodies); });
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+TEST(BodyKernels, FindTheBoxesOfOneByOneAtEveryWidth) {
+  std::mt19937 random(20261126);
+  for (std::uint32_t count = 1; count <= 70; ++count) {
+    const Flock flock = drawn_flock(random, count);
+    for_each_width([&]<int W>() { expect_boxes_as_of_one<W>(flock); });
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+}  // namespace cycloid::solver
