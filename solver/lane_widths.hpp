@@ -32,4 +32,23 @@ int width_that_saves(BlocksOf&& blocks_of) {
   return of_eight < blocks_of(4) ? kAvx2Lanes : 4;
 }
 
+/// Calls act.template operator()<W>() for the width W.
+template <class Act>
+decltype(auto) at_width(int width, Act&& act) {
+  switch (width) {
+    case 1:
+      return act.template operator()<1>();
+    case 8:
+      return act.template operator()<8>();
+    case 16:
+      return act.template operator()<16>();
+    case kAvx2Lanes:
+      return act.template operator()<kAvx2Lanes>();
+    case kAvx512Lanes:
+      return act.template operator()<kAvx512Lanes>();
+    default:
+      return act.template operator()<4>();
+  }
+}
+
 }  // namespace cycloid::solver

@@ -115,20 +115,8 @@ template <int D>
 static void solve_in_lanes(const StepContext<D>& context, const WorldState<D>& state,
                            Workers& workers, StepScratch<D>& scratch) {
   const auto blocks = [&](int width) { return blocks_of(scratch.contact_coloring, width); };
-  switch (context.lanes == 0 ? width_that_saves(blocks) : in_best_set(context.lanes)) {
-    case 1:
-      return solve_contacts<D, 1>(context, state, workers, scratch);
-    case 8:
-      return solve_contacts<D, 8>(context, state, workers, scratch);
-    case 16:
-      return solve_contacts<D, 16>(context, state, workers, scratch);
-    case kAvx2Lanes:
-      return solve_contacts<D, kAvx2Lanes>(context, state, workers, scratch);
-    case kAvx512Lanes:
-      return solve_contacts<D, kAvx512Lanes>(context, state, workers, scratch);
-    default:
-      return solve_contacts<D, 4>(context, state, workers, scratch);
-  }
+  const int width = context.lanes == 0 ? width_that_saves(blocks) : in_best_set(context.lanes);
+  at_width(width, [&]<int W>() { solve_contacts<D, W>(context, state, workers, scratch); });
 }
 
 /// What follows once the contacts are known, read aloud. With World::step the only place that knows

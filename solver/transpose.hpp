@@ -49,12 +49,12 @@ using QuadFour = RawLanes<16>::Float;
 
 /// And in all four quarters.
 [[gnu::always_inline]] inline void transpose(QuadFour (&q)[4]) {
-  const QuadFour low_01 = __builtin_shufflevector(q[0], q[1], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9,
-                                                  25, 12, 28, 13, 29);
+  const QuadFour low_01 =
+      __builtin_shufflevector(q[0], q[1], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
   const QuadFour high_01 = __builtin_shufflevector(q[0], q[1], 2, 18, 3, 19, 6, 22, 7, 23, 10, 26,
                                                    11, 27, 14, 30, 15, 31);
-  const QuadFour low_23 = __builtin_shufflevector(q[2], q[3], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9,
-                                                  25, 12, 28, 13, 29);
+  const QuadFour low_23 =
+      __builtin_shufflevector(q[2], q[3], 0, 16, 1, 17, 4, 20, 5, 21, 8, 24, 9, 25, 12, 28, 13, 29);
   const QuadFour high_23 = __builtin_shufflevector(q[2], q[3], 2, 18, 3, 19, 6, 22, 7, 23, 10, 26,
                                                    11, 27, 14, 30, 15, 31);
   q[0] = __builtin_shufflevector(low_01, low_23, 0, 1, 16, 17, 4, 5, 20, 21, 8, 9, 24, 25, 12, 13,
@@ -68,16 +68,21 @@ using QuadFour = RawLanes<16>::Float;
 }
 
 template <class Value, class Record>
-[[gnu::always_inline]] inline Value load_quad_as(const Record& record, int quad) {
+[[gnu::always_inline]] inline Value load_quad_as(const Record& record, int first) {
   Value loaded;
   static_assert(sizeof loaded == sizeof(Quad));
   const void* bytes = &record;
-  std::memcpy(&loaded, static_cast<const char*>(bytes) + sizeof loaded * quad, sizeof loaded);
+  std::memcpy(&loaded, static_cast<const char*>(bytes) + sizeof(float) * first, sizeof loaded);
   return loaded;
+}
+/// Floats [first, first + 4) of a record.
+template <class Record>
+[[gnu::always_inline]] inline Quad load_floats(const Record& record, int first) {
+  return load_quad_as<Quad>(record, first);
 }
 template <class Record>
 [[gnu::always_inline]] inline Quad load_quad(const Record& record, int quad) {
-  return load_quad_as<Quad>(record, quad);
+  return load_floats(record, 4 * quad);
 }
 template <class Record>
 [[gnu::always_inline]] inline void store_quad(const Quad& from, int quad, Record& record) {
@@ -85,22 +90,21 @@ template <class Record>
   std::memcpy(static_cast<char*>(bytes) + sizeof from * quad, &from, sizeof from);
 }
 
-/// Floats [4 quad, 4 quad + 4) of the records that the lanes name.
+/// Floats [first, first + 4) of the records that the lanes name.
 template <int W, class Record>
-[[gnu::always_inline]] inline void gather_columns(const Record* records,
-                                                  const LaneIndices<W>& index, int quad,
-                                                  Lanes<W> (&columns)[4]) {
+[[gnu::always_inline]] inline void gather_floats(const Record* records, const LaneIndices<W>& index,
+                                                 int first, Lanes<W> (&columns)[4]) {
   if constexpr (W == 1) {
     struct Row {
       float value[4];
     };
-    const Row row = load_quad_as<Row>(records[index[0]], quad);
+    const Row row = load_quad_as<Row>(records[index[0]], first);
     for (int i = 0; i < 4; ++i) columns[i] = Lanes<W>::load(&row.value[i]);
   } else if constexpr (W == kAvx2Lanes) {
     QuadPair rows[4];
     for (int r = 0; r < 4; ++r) {
-      const Quad low = load_quad(records[index[r]], quad);
-      const Quad high = load_quad(records[index[r + 4]], quad);
+      const Quad low = load_floats(records[index[r]], first);
+      const Quad high = load_floats(records[index[r + 4]], first);
       rows[r] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
     }
     transpose(rows);
@@ -109,9 +113,9 @@ template <int W, class Record>
     QuadFour rows[4];
     for (int r = 0; r < 4; ++r) {
       const auto pair = [&](int lane) {
-        return __builtin_shufflevector(load_quad(records[index[lane]], quad),
-                                       load_quad(records[index[lane + 4]], quad), 0, 1, 2, 3, 4, 5,
-                                       6, 7);
+        return __builtin_shufflevector(load_floats(records[index[lane]], first),
+                                       load_floats(records[index[lane + 4]], first), 0, 1, 2, 3, 4,
+                                       5, 6, 7);
       };
       rows[r] = __builtin_shufflevector(pair(r), pair(r + 8), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11,
                                         12, 13, 14, 15);
@@ -122,12 +126,20 @@ template <int W, class Record>
     float column[4][W];
     for (int at = 0; at < W; at += 4) {
       Quad rows[4];
-      for (int r = 0; r < 4; ++r) rows[r] = load_quad(records[index[at + r]], quad);
+      for (int r = 0; r < 4; ++r) rows[r] = load_floats(records[index[at + r]], first);
       transpose(rows);
       for (int i = 0; i < 4; ++i) std::memcpy(&column[i][at], &rows[i], sizeof rows[i]);
     }
     for (int i = 0; i < 4; ++i) std::memcpy(&columns[i].raw, column[i], sizeof columns[i].raw);
   }
+}
+
+/// Floats [4 quad, 4 quad + 4) of the records that the lanes name.
+template <int W, class Record>
+[[gnu::always_inline]] inline void gather_columns(const Record* records,
+                                                  const LaneIndices<W>& index, int quad,
+                                                  Lanes<W> (&columns)[4]) {
+  gather_floats<W>(records, index, 4 * quad, columns);
 }
 
 /// The same back into the records of the lanes in `wanted`.

@@ -14,13 +14,18 @@ struct alignas(16) FlyingShape {
   float last;     ///< Number of its last vertex.
 };
 
-/// What is done to each body of the plane by itself, W of them at a time: the same formulas as for
-/// one, so the same bits. Compiled for each width: body_kernels.cpp, body_kernels_avx2.cpp and
-/// body_kernels_avx512.cpp, from the text in body_lanes.hpp.
+/// What is done to each body by itself, W of them at a time: the same formulas as for one, so the
+/// same bits. Compiled for each width: body_kernels.cpp, body_kernels_avx2.cpp and
+/// body_kernels_avx512.cpp, from the text in body_lanes.hpp and turn_lanes.hpp.
 template <int W>
 struct BodyKernels {
   /// x' = x + h v,  q' = exp(h w) q, at unit length, to the bit as turn_by turns one.
   static void move(float h, const std::uint32_t* bodies, int count, Motion<2>* motions);
+
+  /// The same of W bodies of space, which turn as turn_freely has it. @returns false where one of
+  /// them turns by half a radian or more, for which a lane has no series; then nothing has changed.
+  static bool move_in_space(float h, const Body<3>* bodies, const std::uint32_t* slots,
+                            Motion<3>* motions);
 
   /// The boxes of shapes: bounds_of, then along the flight. @pre every shape has one to four
   /// vertices.

@@ -1,8 +1,6 @@
 #pragma once
 
-#include "solver/constraints/motion_lanes.hpp"
 #include "solver/motion.hpp"
-#include "solver/step_scratch.hpp"
 
 namespace cycloid::solver {
 
@@ -61,9 +59,5 @@ bool keeps_its_spin(const Body<3>& body);
 /// Only changes of the spin pass through I^-1 and the frame of the body: whole spins would take
 /// their rounding along in every substep.
 void turn_freely(float h, const Body<3>& body, Motion<3>& motion);
-
-/// The same of four bodies, and x' = x + h v. @returns false where one of them turns by half a
-/// radian or more, for which a lane has no series; then nothing has changed.
-bool move_four(float h, const Body<3>* bodies, const LaneIndices<4>& slots, Motion<3>* motions);
 
 }  // namespace cycloid::solver

@@ -1,6 +1,7 @@
 #include "solver/collision/collide.hpp"
 #include "solver/collision/few_cornered.hpp"
 #include "solver/collision/hull.hpp"
+#include "solver/lane_widths.hpp"
 
 namespace cycloid::solver {
 
@@ -109,18 +110,8 @@ void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>*
     else
       manifolds[i] = one_by_one(*this, pairs[i]);
   }
-  switch (lanes) {
-    case 8:
-      return collide_in_lanes<8>(*this, pairs, waiting, one_by_one, manifolds);
-    case 16:
-      return collide_in_lanes<16>(*this, pairs, waiting, one_by_one, manifolds);
-    case kAvx2Lanes:
-      return collide_in_lanes<kAvx2Lanes>(*this, pairs, waiting, one_by_one, manifolds);
-    case kAvx512Lanes:
-      return collide_in_lanes<kAvx512Lanes>(*this, pairs, waiting, one_by_one, manifolds);
-    default:
-      return collide_in_lanes<4>(*this, pairs, waiting, one_by_one, manifolds);
-  }
+  at_width(lanes,
+           [&]<int W>() { collide_in_lanes<W>(*this, pairs, waiting, one_by_one, manifolds); });
 }
 
 template <>

@@ -1,9 +1,9 @@
 #include <span>
 
 #include "solver/bodies/body_kernels.hpp"
+#include "solver/bodies/turn_freely.hpp"
 #include "solver/lane_widths.hpp"
 #include "solver/stages/stages.hpp"
-#include "solver/stages/turn_freely.hpp"
 
 namespace cycloid::solver {
 
@@ -19,10 +19,10 @@ static bool turn_inertia(float h, const Body<3>& body, const Motion<3>& motion, 
   return true;
 }
 
-/// What follows of the new rotations of the bodies at places [begin, end) of awake_bodies.
-static void turn_masses(float h, const WorldState<3>& state, std::size_t begin, std::size_t end,
-                        StepScratch<3>& scratch) {
-  for (std::size_t place = begin; place < end; ++place) {
+/// What follows of the new rotations of the bodies at these places of awake_bodies.
+static void turn_masses(float h, const WorldState<3>& state, Range range, StepScratch<3>& scratch) {
+  for (auto place = static_cast<std::size_t>(range.begin);
+       place < static_cast<std::size_t>(range.end); ++place) {
     const std::uint32_t slot = scratch.awake_bodies[place];
     const Body<3>& body = state.bodies[slot];
     const bool turned = turn_inertia(h, body, scratch.motions[slot], scratch.masses[slot]);
@@ -32,6 +32,7 @@ static void turn_masses(float h, const WorldState<3>& state, std::size_t begin, 
     for (int axis = 0; axis < 3; ++axis) scratch.accelerations[place].rate[3 + axis] = rate[axis];
   }
 }
+
 template <int D>
 static void move_by_pseudo_velocities(float h, Range range, StepScratch<D>& scratch) {
   for (int place = range.begin; place < range.end; ++place) {
@@ -40,6 +41,13 @@ static void move_by_pseudo_velocities(float h, Range range, StepScratch<D>& scra
     motion.delta_position += h * scratch.saved_motions[slot].velocity;
     turn_by(h * scratch.saved_motions[slot].spin, motion);
   }
+}
+
+template <int D>
+static std::span<const std::uint32_t> slots_of(Range range, const StepScratch<D>& scratch) {
+  return std::span(scratch.awake_bodies)
+      .subspan(static_cast<std::size_t>(range.begin),
+               static_cast<std::size_t>(range.end - range.begin));
 }
 
 /// Moves the bodies of these slots W at a time. What would leave half of the lanes empty goes in
@@ -57,49 +65,42 @@ static void move_in_lanes(float h, std::span<const std::uint32_t> slots, Motion<
 
 static void move_range(const StepContext<2>& context, const WorldState<2>&, Range range,
                        StepScratch<2>& scratch) {
-  const auto slots = std::span<const std::uint32_t>(scratch.awake_bodies)
-                         .subspan(static_cast<std::size_t>(range.begin),
-                                  static_cast<std::size_t>(range.end - range.begin));
+  const auto slots = slots_of(range, scratch);
   Motion<2>* motions = scratch.motions.data();
-  switch (widest_lanes(context.lanes)) {
-    case 1:
-      return move_in_lanes<1>(context.h, slots, motions);
-    case 8:
-      return move_in_lanes<8>(context.h, slots, motions);
-    case 16:
-      return move_in_lanes<16>(context.h, slots, motions);
-    case kAvx2Lanes:
-      return move_in_lanes<kAvx2Lanes>(context.h, slots, motions);
-    case kAvx512Lanes:
-      return move_in_lanes<kAvx512Lanes>(context.h, slots, motions);
-    default:
-      return move_in_lanes<4>(context.h, slots, motions);
-  }
+  at_width(widest_lanes(context.lanes),
+           [&]<int W>() { move_in_lanes<W>(context.h, slots, motions); });
 }
 
-/// Moves the four bodies from a place of awake_bodies on, or the one that lies there. @returns the
-/// place behind them.
-static std::size_t move_some(float h, const WorldState<3>& state, std::size_t place,
-                             std::size_t end, StepScratch<3>& scratch) {
-  const std::uint32_t* slots = scratch.awake_bodies.data() + place;
-  Motion<3>* motions = scratch.motions.data();
-  if (place + 4 <= end &&
-      move_four(h, state.bodies.data(), {slots[0], slots[1], slots[2], slots[3]}, motions))
-    return place + 4;
-  Motion<3>& motion = motions[slots[0]];
+static void move_one(float h, const Body<3>& body, Motion<3>& motion) {
   motion.delta_position += h * motion.velocity;
-  turn_freely(h, state.bodies[slots[0]], motion);
-  return place + 1;
+  turn_freely(h, body, motion);
+}
+
+/// Moves bodies of space W at a time; four or one where one of them turns too far for a lane, or
+/// too few are left.
+template <int W>
+static void move_in_lanes(float h, const Body<3>* bodies, std::span<const std::uint32_t> slots,
+                          Motion<3>* motions) {
+  constexpr std::size_t kLanes = kLaneCount<W>;
+  for (; slots.size() >= kLanes; slots = slots.subspan(kLanes)) {
+    if (BodyKernels<W>::move_in_space(h, bodies, slots.data(), motions)) continue;
+    if constexpr (kLanes > 4)
+      move_in_lanes<4>(h, bodies, slots.first(kLanes), motions);
+    else
+      for (const std::uint32_t slot : slots.first(kLanes)) move_one(h, bodies[slot], motions[slot]);
+  }
+  if constexpr (kLanes > 4) return move_in_lanes<4>(h, bodies, slots, motions);
+  for (const std::uint32_t slot : slots) move_one(h, bodies[slot], motions[slot]);
 }
 
 static void move_range(const StepContext<3>& context, const WorldState<3>& state, Range range,
                        StepScratch<3>& scratch) {
-  const auto end = static_cast<std::size_t>(range.end);
-  for (auto i = static_cast<std::size_t>(range.begin); i < end;) {
-    const std::size_t next = move_some(context.h, state, i, end, scratch);
-    turn_masses(context.h, state, i, next, scratch);
-    i = next;
-  }
+  const auto slots = slots_of(range, scratch);
+  const Body<3>* bodies = state.bodies.data();
+  Motion<3>* motions = scratch.motions.data();
+  at_width(widest_lanes(context.lanes),
+           [&]<int W>() { move_in_lanes<W>(context.h, bodies, slots, motions); });
+  turn_masses(context.h, state, range, scratch);
 }
 
 /// x' = x + h v,  q' = exp(h w) q, at unit length; in space I(q') w' = I(q) w.

@@ -60,20 +60,8 @@ static void find_boxes(const StepContext<2>& context, const WorldState<2>& state
   }
   const Shape<2>* shapes = state.shapes.data();
   Bounds<2>* boxes = cache.boxes.data();
-  switch (widest_lanes(context.lanes)) {
-    case 1:
-      return find_boxes_in_lanes<1>(flying, few, shapes, boxes);
-    case 8:
-      return find_boxes_in_lanes<8>(flying, few, shapes, boxes);
-    case 16:
-      return find_boxes_in_lanes<16>(flying, few, shapes, boxes);
-    case kAvx2Lanes:
-      return find_boxes_in_lanes<kAvx2Lanes>(flying, few, shapes, boxes);
-    case kAvx512Lanes:
-      return find_boxes_in_lanes<kAvx512Lanes>(flying, few, shapes, boxes);
-    default:
-      return find_boxes_in_lanes<4>(flying, few, shapes, boxes);
-  }
+  at_width(widest_lanes(context.lanes),
+           [&]<int W>() { find_boxes_in_lanes<W>(flying, few, shapes, boxes); });
 }
 
 /// Moves the boxes of these shapes, and lists which left their fat ones. None is left in `moving`.

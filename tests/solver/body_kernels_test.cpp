@@ -37,7 +37,7 @@ static void expect_to_move_as_one(const std::vector<Motion<2>>& motions,
   std::vector<Motion<2>> moved = motions;
   BodyKernels<W>::move(kStep, bodies.data(), static_cast<int>(bodies.size()), moved.data());
   for (std::size_t i = 0; i < moved.size(); ++i)
-    EXPECT_EQ(std::memcmp(&expected[i], &moved[i], sizeof moved[i]), 0)
+    EXPECT_EQ(std::memcmp(&expected[i], &moved[i], sizeof(float) * kMotionComponents<2>), 0)
         << "body " << i << " of " << bodies.size() << ", width " << W;
 }
 

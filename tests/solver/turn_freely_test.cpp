@@ -1,10 +1,14 @@
-#include "solver/stages/turn_freely.hpp"
+#include "solver/bodies/turn_freely.hpp"
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstring>
 #include <random>
 #include <vector>
+
+#include "solver/bodies/body_kernels.hpp"
+#include "solver/instruction_sets.hpp"
 
 namespace cycloid::solver {
 
@@ -46,37 +50,61 @@ struct Turned {
   int left = 0;  ///< To the one that takes a body at a time.
 };
 
-static Turned turn_many(float spin) {
+/// Blocks of W bodies, whose slots are in no order, among others that nothing may touch.
+template <int W>
+static Turned turn_many(float spin, int rounds) {
   constexpr float kStep_s = 1.0f / 240.0f;
+  constexpr std::uint32_t kBodies = kLaneCount<W> + 2;
   std::mt19937 random(3);
   Turned turned;
-  for (int round = 0; round < 20000; ++round) {
+  for (int round = 0; round < rounds; ++round) {
     std::vector<Body<3>> bodies;
     std::vector<Motion<3>> motions;
-    for (int i = 0; i < 6; ++i) {
+    std::vector<std::uint32_t> slots;
+    for (std::uint32_t i = 0; i < kBodies; ++i) {
       bodies.push_back(any_body(random));
       motions.push_back(any_motion(spin, random));
+      slots.push_back(i);
     }
-    const LaneIndices<4> slots = {4, 0, 5, 2};
+    std::shuffle(slots.begin(), slots.end(), random);
+    slots.resize(kLaneCount<W>);
     std::vector<Motion<3>> expected = motions;
-    const bool done = move_four(kStep_s, bodies.data(), slots, motions.data());
+    const bool done =
+        BodyKernels<W>::move_in_space(kStep_s, bodies.data(), slots.data(), motions.data());
     for (const std::uint32_t slot : slots) {
       if (!done) continue;
       expected[slot].delta_position += kStep_s * expected[slot].velocity;
       turn_freely(kStep_s, bodies[slot], expected[slot]);
     }
     for (std::size_t i = 0; i < motions.size(); ++i)
-      EXPECT_EQ(std::memcmp(&motions[i], &expected[i], sizeof motions[i]), 0) << round << ", " << i;
+      EXPECT_EQ(std::memcmp(&motions[i], &expected[i], sizeof motions[i]), 0)
+          << "round " << round << ", body " << i << ", width " << W;
     ++(done ? turned.in_lanes : turned.left);
   }
   return turned;
 }
 
-TEST(TurnFreely, FourInLanesTurnToTheBitAsEachByItself) {
-  EXPECT_GT(turn_many(3.0f).in_lanes, 19000);
-  const Turned fast = turn_many(40.0f);  // A sixth of a radian in a substep, and more at times.
-  EXPECT_GT(fast.in_lanes, 2000);
-  EXPECT_GT(fast.left, 1000);
+template <int W>
+static void expect_to_turn_as_each_by_itself() {
+  constexpr int kRounds = 20000 / kLaneCount<W>;
+  EXPECT_GT(turn_many<W>(3.0f, kRounds).in_lanes, kRounds / 2);
+  Turned fast;  // Up to a sixth of a radian in a substep, and more at times.
+  for (const float spin : {10.0f, 20.0f, 40.0f}) {
+    const Turned turned = turn_many<W>(spin, kRounds);
+    fast.in_lanes += turned.in_lanes;
+    fast.left += turned.left;
+  }
+  EXPECT_GT(fast.in_lanes, kRounds / 10);
+  EXPECT_GT(fast.left, kRounds / 50);
+}
+
+TEST(TurnFreely, LanesTurnToTheBitAsEachByItself) {
+  expect_to_turn_as_each_by_itself<1>();
+  expect_to_turn_as_each_by_itself<4>();
+  expect_to_turn_as_each_by_itself<8>();
+  expect_to_turn_as_each_by_itself<16>();
+  if (has_avx2_kernels()) expect_to_turn_as_each_by_itself<kAvx2Lanes>();
+  if (has_avx512_kernels()) expect_to_turn_as_each_by_itself<kAvx512Lanes>();
 }
 
 }  // namespace cycloid::solver
