@@ -32,6 +32,16 @@ int width_that_saves(BlocksOf&& blocks_of) {
   return of_eight < blocks_of(4) ? kAvx2Lanes : 4;
 }
 
+/// How many of a range go W at a time. The last ones, where they would leave half of the lanes
+/// empty, take less time in lanes of `kFewLanes`.
+template <int W>
+constexpr int count_for_lanes(int count) {
+  const int last = count % kLaneCount<W>;
+  return 2 * last > kLaneCount<W> ? count : count - last;
+}
+template <int W>
+inline constexpr int kFewLanes = kLaneCount<W> < 4 ? W : 4;
+
 /// Calls act.template operator()<W>() for the width W.
 template <class Act>
 decltype(auto) at_width(int width, Act&& act) {

@@ -50,17 +50,13 @@ static std::span<const std::uint32_t> slots_of(Range range, const StepScratch<D>
                static_cast<std::size_t>(range.end - range.begin));
 }
 
-/// Moves the bodies of these slots W at a time. What would leave half of the lanes empty goes in
-/// fours.
+/// Moves the bodies of these slots W at a time.
 template <int W>
 static void move_in_lanes(float h, std::span<const std::uint32_t> slots, Motion<2>* motions) {
-  constexpr std::size_t kLanes = kLaneCount<W>;
-  const std::size_t last = slots.size() % kLanes;
-  const std::size_t wide = 2 * last > kLanes ? slots.size() : slots.size() - last;
-  const auto count = [](std::span<const std::uint32_t> of) { return static_cast<int>(of.size()); };
-  const auto rest = slots.subspan(wide);
-  BodyKernels<W>::move(h, slots.data(), static_cast<int>(wide), motions);
-  if (!rest.empty()) BodyKernels < kLanes<4 ? W : 4>::move(h, rest.data(), count(rest), motions);
+  const auto count = static_cast<int>(slots.size());
+  const int wide = count_for_lanes<W>(count);
+  BodyKernels<W>::move(h, slots.data(), wide, motions);
+  BodyKernels<kFewLanes<W>>::move(h, slots.data() + wide, count - wide, motions);
 }
 
 static void move_range(const StepContext<2>& context, const WorldState<2>&, Range range,

@@ -27,17 +27,14 @@ static void find_boxes(const StepContext<3>& context, const WorldState<3>& state
   for (int i = 0; i < moving.count; ++i) find_box(context, state, moving.shapes[i], cache);
 }
 
-/// Those that have few vertices W at a time. What would leave half of the lanes empty goes in
-/// fours.
+/// Those that have few vertices, W at a time.
 template <int W>
 static void find_boxes_in_lanes(const FlyingShape* flying, const MovingShapes& few,
                                 const Shape<2>* of, Bounds<2>* boxes) {
-  constexpr int kLanes = kLaneCount<W>;
-  const int last = few.count % kLanes;
-  const int wide = 2 * last > kLanes ? few.count : few.count - last;
+  const int wide = count_for_lanes<W>(few.count);
   BodyKernels<W>::find_boxes(flying, few.shapes, wide, of, boxes);
-  BodyKernels <
-      kLanes<4 ? W : 4>::find_boxes(flying + wide, few.shapes + wide, few.count - wide, of, boxes);
+  BodyKernels<kFewLanes<W>>::find_boxes(flying + wide, few.shapes + wide, few.count - wide, of,
+                                        boxes);
 }
 
 static void find_boxes(const StepContext<2>& context, const WorldState<2>& state,
