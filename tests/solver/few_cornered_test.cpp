@@ -61,13 +61,30 @@ struct Crowd {
   std::vector<PlacedPair<2>> pairs;
 };
 
+/// Two capsules in one line: no side parts them.
+static void append_line(std::mt19937& random, Crowd& made) {
+  const auto a = static_cast<std::uint32_t>(made.shapes.size());
+  for (int i = 0; i < 2; ++i)
+    EXPECT_TRUE(append_shapes(capsule(drawn(random, 0.25f, 1.5f), 0.25f), 0, made.shapes).ok());
+  const Pose<2> pose_a = drawn_pose(random);
+  Pose<2> pose_b = pose_a;
+  pose_b.position += rotate(pose_a.rotation, Vec<2>{{drawn(random, -4.0f, 4.0f), 0.0f}});
+  made.pairs.push_back({pose_a, pose_b, a, a + 1, drawn(random, 0.0f, 0.5f)});
+}
+
 static Crowd crowd(std::mt19937& random, int count) {
   Crowd made;
-  for (int i = 0; i < 2 * count; ++i)
-    EXPECT_TRUE(append_shapes(drawn_shape(random), 0, made.shapes).ok());
-  for (std::uint32_t i = 0; i < static_cast<std::uint32_t>(count); ++i)
+  for (int i = 0; i < count; ++i) {
+    if (random() % 8 == 0) {
+      append_line(random, made);
+      continue;
+    }
+    const auto a = static_cast<std::uint32_t>(made.shapes.size());
+    for (int shape = 0; shape < 2; ++shape)
+      EXPECT_TRUE(append_shapes(drawn_shape(random), 0, made.shapes).ok());
     made.pairs.push_back(
-        {drawn_pose(random), drawn_pose(random), 2 * i, 2 * i + 1, drawn(random, 0.0f, 0.5f)});
+        {drawn_pose(random), drawn_pose(random), a, a + 1, drawn(random, 0.0f, 0.5f)});
+  }
   return made;
 }
 
