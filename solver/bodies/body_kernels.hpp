@@ -20,7 +20,7 @@ struct alignas(16) FlyingShape {
 template <int W>
 struct BodyKernels {
   /// x' = x + h v,  q' = exp(h w) q, at unit length, to the bit as turn_by turns one.
-  static void move(float h, const std::uint32_t* bodies, int count, Motion<2>* motions);
+  static void move(float h, const std::uint32_t* slots, int count, Motion<2>* motions);
 
   /// The same of W bodies of space, which turn as turn_freely has it. @returns false where one of
   /// them turns by half a radian or more, for which a lane has no series; then nothing has changed.

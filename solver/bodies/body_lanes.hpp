@@ -11,6 +11,20 @@ namespace cycloid::solver {
 /// The text of BodyKernels, for the files that compile it and no others. Every function is a
 /// template on W, so that those compiled for one instruction set have names of their own.
 
+/// The places from `begin` on, one in each lane. @returns which lanes are used: where `count` ends
+/// before them the others stand for the last place again.
+template <int W>
+[[gnu::always_inline]] inline LaneBits places_in_lanes(int begin, int count,
+                                                       LaneIndices<W>& places) {
+  LaneBits used = 0;
+  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+    const bool is_used = begin + lane < count;
+    places[lane] = static_cast<std::uint32_t>(is_used ? begin + lane : count - 1);
+    if (is_used) used |= LaneBits{1} << lane;
+  }
+  return used;
+}
+
 template <int W>
 [[gnu::always_inline]] inline void move_lanes(Lanes<W> h, MotionLanes<2, W>& motion) {
   using L = Lanes<W>;
@@ -32,18 +46,15 @@ template <int W>
 }
 
 template <int W>
-void BodyKernels<W>::move(float h, const std::uint32_t* bodies, int count, Motion<2>* motions) {
+void BodyKernels<W>::move(float h, const std::uint32_t* slots, int count, Motion<2>* motions) {
   for (int begin = 0; begin < count; begin += kLaneCount<W>) {
-    LaneIndices<W> in_lane;
-    LaneBits used = 0;
-    for (int lane = 0; lane < kLaneCount<W>; ++lane) {
-      const bool is_used = begin + lane < count;
-      in_lane[lane] = bodies[is_used ? begin + lane : count - 1];
-      if (is_used) used |= LaneBits{1} << lane;
-    }
-    MotionLanes<2, W> motion = gather<2, W>(motions, in_lane);
+    LaneIndices<W> places;
+    const LaneBits used = places_in_lanes<W>(begin, count, places);
+    LaneIndices<W> bodies;
+    for (int lane = 0; lane < kLaneCount<W>; ++lane) bodies[lane] = slots[places[lane]];
+    MotionLanes<2, W> motion = gather<2, W>(motions, bodies);
     move_lanes<W>(Lanes<W>(h), motion);
-    scatter_quads<0, kPoseQuads<2>>(motion, used, in_lane, motions);
+    scatter_quads<0, kPoseQuads<2>>(motion, used, bodies, motions);
   }
 }
 
@@ -63,21 +74,20 @@ template <int W>
   using L = Lanes<W>;
   static_assert(offsetof(Geometry<2>, vertices) == 0);
   BoundsLanes<W> bounds;
+  Vec<2, L> first = Vec<2, L>::zero();
   for (int half = 0; half < 2; ++half) {
     L xy[4];
     gather_columns<W>(of, shapes, half, xy);
-    for (int corner = 2 * half; corner < 2 * half + 2; ++corner) {
-      const Vec<2, L> r{{xy[2 * corner - 4 * half], xy[2 * corner - 4 * half + 1]}};
-      const Vec<2, L> vertex = position + rotate(rotation, r);
-      if (corner == 0) {
-        bounds = {vertex, vertex};
-        continue;
-      }
+    for (int i = 0; i < 2; ++i) {
+      const int corner = 2 * half + i;
+      const Vec<2, L> vertex = position + rotate(rotation, Vec<2, L>{{xy[2 * i], xy[2 * i + 1]}});
+      if (corner == 0) first = vertex;
+      // Behind the last vertex comes the first again.
       const auto is_vertex = last > L(static_cast<float>(corner) - 0.5f);
-      for (int i = 0; i < 2; ++i) {
-        const L at = select(is_vertex, vertex[i], bounds.lower[i]);
-        bounds.lower[i] = min(bounds.lower[i], at);
-        bounds.upper[i] = max(bounds.upper[i], select(is_vertex, vertex[i], bounds.upper[i]));
+      for (int axis = 0; axis < 2; ++axis) {
+        const L at = select(is_vertex, vertex[axis], first[axis]);
+        bounds.lower[axis] = corner == 0 ? at : min(bounds.lower[axis], at);
+        bounds.upper[axis] = corner == 0 ? at : max(bounds.upper[axis], at);
       }
     }
   }
@@ -90,19 +100,14 @@ void BodyKernels<W>::find_boxes(const FlyingShape* flying, const std::uint32_t* 
   using L = Lanes<W>;
   static_assert(sizeof(Bounds<2>) == sizeof(Quad) && sizeof(FlyingShape) == 2 * sizeof(Quad));
   for (int begin = 0; begin < count; begin += kLaneCount<W>) {
-    LaneIndices<W> place;
+    LaneIndices<W> places;
+    const LaneBits used = places_in_lanes<W>(begin, count, places);
     LaneIndices<W> shape;
-    LaneBits used = 0;
-    for (int lane = 0; lane < kLaneCount<W>; ++lane) {
-      const bool is_used = begin + lane < count;
-      place[lane] = static_cast<std::uint32_t>(is_used ? begin + lane : count - 1);
-      shape[lane] = shapes[place[lane]];
-      if (is_used) used |= LaneBits{1} << lane;
-    }
+    for (int lane = 0; lane < kLaneCount<W>; ++lane) shape[lane] = shapes[places[lane]];
     L pose[4];
     L more[4];
-    gather_columns<W>(flying, place, 0, pose);
-    gather_columns<W>(flying, place, 1, more);
+    gather_columns<W>(flying, places, 0, pose);
+    gather_columns<W>(flying, places, 1, more);
     const BoundsLanes<W> bounds =
         bounds_in_lanes<W>(of, shape, {{pose[2], pose[3]}}, {{pose[0], pose[1]}}, more[3]);
     L box[4];

@@ -2,6 +2,7 @@
 
 #include <cstddef>
 
+#include "solver/collision/closest_fractions.hpp"
 #include "solver/collision/few_cornered.hpp"
 
 namespace cycloid::solver {
@@ -232,33 +233,6 @@ template <int W>
   return clipped;
 }
 
-/// Closest points of the two edges, as fractions along the reference and from the incident corner
-/// on: closest_fractions in lanes.
-template <int W>
-[[gnu::always_inline]] inline void closest_fractions(const FacingEdges<W>& facing, Lanes<W>& s,
-                                                     Lanes<W>& t) {
-  using L = Lanes<W>;
-  const L zero = L(0.0f);
-  const L one = L(1.0f);
-  const auto within = [&](L of) { return max(zero, min(of, one)); };
-  const Vec<2, L>& d1 = facing.span;
-  const Vec<2, L> d2 = facing.other[0] - facing.other[1];
-  const Vec<2, L> r = facing.from - facing.other[1];
-  const L a = dot(d1, d1);
-  const L e = dot(d2, d2);
-  const L b = dot(d1, d2);
-  const L c = dot(d1, r);
-  const L f = dot(d2, r);
-  const L denominator = a * e - b * b;
-  const auto cross = denominator > L(1.0e-6f) * a * e;
-  s = select(cross, within((b * f - c * e) / select(cross, denominator, one)), zero);
-  t = (b * s + f) / e;
-  const auto before = t < zero;
-  const auto behind = t > one;
-  s = select(before, within(-c / a), select(behind, within((b - c) / a), s));
-  t = select(before, zero, select(behind, one, t));
-}
-
 /// Replaces the points where two corners are what is closest: vertex_against_vertex in lanes.
 /// @param asks  1 where that may be.
 template <int W>
@@ -267,13 +241,12 @@ template <int W>
   using L = Lanes<W>;
   const L zero = L(0.0f);
   const L one = L(1.0f);
-  L s;
-  L t;
-  closest_fractions(facing, s, t);
+  const Vec<2, L> other_span = facing.other[0] - facing.other[1];
+  const auto [s, t] = closest_fractions(facing.from, facing.span, facing.other[1], other_span);
   const L s_ends = select(s == zero, asks, select(s == one, asks, zero));
   const L both_end = select(t == zero, s_ends, select(t == one, s_ends, zero));
   const Vec<2, L> on_reference = facing.from + s * facing.span;
-  const Vec<2, L> on_other = facing.other[1] + t * (facing.other[0] - facing.other[1]);
+  const Vec<2, L> on_other = facing.other[1] + t * other_span;
   const Vec<2, L> between = on_other - on_reference;
   const L distance = sqrt(dot(between, between));
   const auto corners = select(distance < L(1.0e-6f), zero, both_end) > zero;

@@ -1,5 +1,7 @@
 #include "solver/collision/hull.hpp"
 
+#include "solver/collision/closest_fractions.hpp"
+
 namespace cycloid::solver {
 
 /// An edge of one hull as the reference of a manifold.
@@ -66,28 +68,6 @@ static Edge edge_of(const Hull& hull, std::uint32_t i) {
   return {i, i + 1 < hull.count ? i + 1 : 0};
 }
 
-/// Closest points of two edges that do not cross, as fractions along them.
-/// Source: Ericson, "Real-Time Collision Detection" (2005), 5.1.9.
-static void closest_fractions(const Vec<2>& p, const Vec<2>& d1, const Vec<2>& q, const Vec<2>& d2,
-                              float& s, float& t) {
-  const Vec<2> r = p - q;
-  const float a = dot(d1, d1);
-  const float e = dot(d2, d2);
-  const float b = dot(d1, d2);
-  const float c = dot(d1, r);
-  const float f = dot(d2, r);
-  const float denominator = a * e - b * b;
-  s = denominator > 1.0e-6f * a * e ? clamp((b * f - c * e) / denominator, 0.0f, 1.0f) : 0.0f;
-  t = (b * s + f) / e;
-  if (t < 0.0f) {
-    t = 0.0f;
-    s = clamp(-c / a, 0.0f, 1.0f);
-  } else if (t > 1.0f) {
-    t = 1.0f;
-    s = clamp((b - c) / a, 0.0f, 1.0f);
-  }
-}
-
 /// What the two reference choices share: the reference hull, its edge, and the incident hull.
 struct Reference {
   const Hull& hull;
@@ -114,9 +94,7 @@ static bool vertex_against_vertex(const Reference& reference, const Edge& incide
   const Vec<2> q = reference.other.vertex(incident.from);
   const Vec<2> d1 = reference.hull.vertex(edge.to) - p;
   const Vec<2> d2 = reference.other.vertex(incident.to) - q;
-  float s = 0.0f;
-  float t = 0.0f;
-  closest_fractions(p, d1, q, d2, s, t);
+  const auto [s, t] = closest_fractions(p, d1, q, d2);
   const bool ends = (s == 0.0f || s == 1.0f) && (t == 0.0f || t == 1.0f);
   if (!ends) return false;
   const Vec<2> on_reference = p + s * d1;

@@ -22,7 +22,7 @@ static Motion<2> drawn_motion(std::mt19937& random) {
   return {{{drawn(random, 50.0f), drawn(random, 50.0f)}},
           {{spin}},
           {{drawn(random, 1.0f), drawn(random, 1.0f)}},
-          {{std::cos(angle), std::sin(angle)}}};
+          rotation_by(Spin<2>{{angle}})};
 }
 
 template <int W>
@@ -75,8 +75,7 @@ static Flock drawn_flock(std::mt19937& random, std::uint32_t count) {
   for (std::uint32_t i = 0; i < 2 * count; i += 2) {  // Every second shape lies still.
     const Shape<2>& shape = flock.shapes[i];
     const float angle = drawn(random, 3.0f);
-    const Pose<2> pose{{{drawn(random, 9.0f), drawn(random, 9.0f)}},
-                       {{std::cos(angle), std::sin(angle)}}};
+    const Pose<2> pose{{{drawn(random, 9.0f), drawn(random, 9.0f)}}, rotation_by(Spin<2>{{angle}})};
     const Vec<2> flight = {{drawn(random, 1.0f), drawn(random, 1.0f)}};
     flock.numbers.push_back(i);
     flock.flying.push_back(

@@ -6,6 +6,7 @@
 
 #include "solver/collision/collide.hpp"
 #include "solver/instruction_sets.hpp"
+#include "solver/motion.hpp"
 #include "solver/shapes.hpp"
 #include "tests/solver/world_fixture.hpp"
 
@@ -53,7 +54,7 @@ static Pose<2> drawn_pose(std::mt19937& random) {
   const float quarter_turns = 1.57079632679f * static_cast<float>(random() % 4);
   const bool is_straight = random() % 2 == 0;
   const float angle = is_straight ? quarter_turns : drawn(random, -3.0f, 3.0f);
-  return {at, {{std::cos(angle), std::sin(angle)}}};
+  return {at, rotation_by(Spin<2>{{angle}})};
 }
 
 struct Crowd {
