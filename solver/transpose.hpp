@@ -75,6 +75,14 @@ template <class Value, class Record>
   std::memcpy(&loaded, static_cast<const char*>(bytes) + sizeof(float) * first, sizeof loaded);
   return loaded;
 }
+/// Which of the floats of a record its member begins with.
+template <class Record, class Member>
+[[gnu::always_inline]] inline int float_at(const Record& record, const Member& member) {
+  const void* begin = &record;
+  const void* at = &member;
+  const auto bytes = static_cast<const char*>(at) - static_cast<const char*>(begin);
+  return static_cast<int>(bytes) / static_cast<int>(sizeof(float));
+}
 /// Floats [first, first + 4) of a record.
 template <class Record>
 [[gnu::always_inline]] inline Quad load_floats(const Record& record, int first) {
@@ -85,9 +93,13 @@ template <class Record>
   return load_floats(record, 4 * quad);
 }
 template <class Record>
-[[gnu::always_inline]] inline void store_quad(const Quad& from, int quad, Record& record) {
+[[gnu::always_inline]] inline void store_floats(const Quad& from, int first, Record& record) {
   void* bytes = &record;
-  std::memcpy(static_cast<char*>(bytes) + sizeof from * quad, &from, sizeof from);
+  std::memcpy(static_cast<char*>(bytes) + sizeof(float) * first, &from, sizeof from);
+}
+template <class Record>
+[[gnu::always_inline]] inline void store_quad(const Quad& from, int quad, Record& record) {
+  store_floats(from, 4 * quad, record);
 }
 
 /// Floats [first, first + 4) of the records that the lanes name.
@@ -142,11 +154,11 @@ template <int W, class Record>
   gather_floats<W>(records, index, 4 * quad, columns);
 }
 
-/// The same back into the records of the lanes in `wanted`.
+/// Into floats [first, first + 4) of the records of the lanes in `wanted`.
 template <int W, class Record>
-[[gnu::always_inline]] inline void scatter_columns(const Lanes<W> (&columns)[4], LaneBits wanted,
-                                                   int quad, const LaneIndices<W>& index,
-                                                   Record* records) {
+[[gnu::always_inline]] inline void scatter_floats(const Lanes<W> (&columns)[4], LaneBits wanted,
+                                                  int first, const LaneIndices<W>& index,
+                                                  Record* records) {
   Quad rows[kLaneCount<W>];
   if constexpr (W == 1) {
     for (int i = 0; i < 4; ++i) rows[0][i] = columns[i].raw[0];
@@ -178,11 +190,19 @@ template <int W, class Record>
   }
   if (wanted == kAllLanes<W>) {
     for (int lane = 0; lane < kLaneCount<W>; ++lane)
-      store_quad(rows[lane], quad, records[index[lane]]);
+      store_floats(rows[lane], first, records[index[lane]]);
     return;
   }
   for (int lane = 0; lane < kLaneCount<W>; ++lane)
-    if ((wanted >> lane & 1u) != 0) store_quad(rows[lane], quad, records[index[lane]]);
+    if ((wanted >> lane & 1u) != 0) store_floats(rows[lane], first, records[index[lane]]);
+}
+
+/// Into floats [4 quad, 4 quad + 4).
+template <int W, class Record>
+[[gnu::always_inline]] inline void scatter_columns(const Lanes<W> (&columns)[4], LaneBits wanted,
+                                                   int quad, const LaneIndices<W>& index,
+                                                   Record* records) {
+  scatter_floats<W>(columns, wanted, 4 * quad, index, records);
 }
 
 }  // namespace cycloid::solver

@@ -118,11 +118,13 @@ static void add_joint(const WorldState<D>& state, const Joint<D>& joint,
 }
 
 /// A row along `direction` at a point of contact.
+/// @param between  Centre of b from that of a, m.
 template <int D>
-static ProblemRow<D> contact_row(const solver::ManifoldPoint<D>& point, const Vec<D>& direction) {
+static ProblemRow<D> contact_row(const solver::ManifoldPoint<D>& point, const Vec<D>& between,
+                                 const Vec<D>& direction) {
   ProblemRow<D> row;
   row.jacobian_a = freedoms_of<D>(-direction, -moment(point.anchor_a, direction));
-  row.jacobian_b = freedoms_of<D>(direction, moment(point.anchor_b, direction));
+  row.jacobian_b = freedoms_of<D>(direction, moment(anchor_b_of(point, between), direction));
   return row;
 }
 
@@ -156,7 +158,8 @@ static void add_point(const WorldState<D>& state, const Touching& pair, const Ma
     measure_row(state, row);
     problem.rows.push_back(row);
   };
-  ProblemRow<D> row = contact_row(point, manifold.normal);
+  const Vec<D> between = state.bodies[pair.body_b].position - state.bodies[pair.body_a].position;
+  ProblemRow<D> row = contact_row(point, between, manifold.normal);
   row.kind = RowKind::kNormal;
   const double substep_s = static_cast<double>(state.header.tick_s) / state.header.tuning.substeps;
   row.speed = std::max(static_cast<double>(point.separation), 0.0) / substep_s;
@@ -165,7 +168,7 @@ static void add_point(const WorldState<D>& state, const Touching& pair, const Ma
   Vec<D> tangents[Dim<D>::kTangents];
   solver::tangents(manifold.normal, tangents);
   for (int t = 0; t < Dim<D>::kTangents; ++t) {
-    row = contact_row(point, tangents[t]);
+    row = contact_row(point, between, tangents[t]);
     row.kind = RowKind::kFriction;
     row.normal = normal;
     row.friction = pair.friction;

@@ -140,7 +140,7 @@ static EdgePair edges_on(const CrossAxis& axis, const Solid& a, const Solid& b,
 
 /// Axes in the order: faces of a, faces of b, edges of a across edges of b, a's first; a later one
 /// has to be better by AxisTolerance. Source: Gottschalk, Lin and Manocha, "OBBTree" (1996).
-Manifold<3> box_against_box(const Solid& a, const Solid& b, const Vec<3>& a_to_b, float margin) {
+Manifold<3> box_against_box(const Solid& a, const Solid& b, float margin) {
   const Relative relative = relative_of(a, b);
   const AxisTolerance tolerance(
       min(min(min(a.half[0], a.half[1]), a.half[2]), min(min(b.half[0], b.half[1]), b.half[2])));
@@ -154,8 +154,8 @@ Manifold<3> box_against_box(const Solid& a, const Solid& b, const Vec<3>& a_to_b
       best_edges(a, b, relative, tolerance, tolerance.beyond_faces(face.separation));
   if (edges.separation > margin) return {};
   if (edges.separation > kNoSeparation)
-    return touch_edges(edges_on(edges, a, b, relative), tolerance, a_to_b, margin);
-  return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, a_to_b, margin);
+    return touch_edges(edges_on(edges, a, b, relative), tolerance, margin);
+  return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, margin);
 }
 
 }  // namespace cycloid::solver

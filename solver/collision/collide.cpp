@@ -10,7 +10,7 @@ namespace cycloid::solver {
 
 template <int D>
 static Manifold<D> ball_against_ball(const Vec<D>& a, float radius_a, const Vec<D>& b,
-                                     float radius_b, const Vec<D>& a_to_b, float margin) {
+                                     float radius_b, float margin) {
   const Vec<D> between = b - a;
   const float distance = length(between);
   const float separation = distance - (radius_a + radius_b);
@@ -19,18 +19,18 @@ static Manifold<D> ball_against_ball(const Vec<D>& a, float radius_a, const Vec<
   up[1] = 1.0f;  // Concentric balls part upwards: any direction will do, but it has to be one.
   Manifold<D> manifold;
   manifold.normal = normalized_or(between, up);
-  add_point(a + (radius_a + 0.5f * separation) * manifold.normal, separation, 0, a_to_b, manifold);
+  add_point(a + (radius_a + 0.5f * separation) * manifold.normal, separation, 0, manifold);
   return manifold;
 }
 
 template <int D>
 static Manifold<D> half_space_against_ball(const Vec<D>& normal, float offset, const Vec<D>& centre,
-                                           float radius, const Vec<D>& a_to_b, float margin) {
+                                           float radius, float margin) {
   const float separation = dot(normal, centre) - offset - radius;
   if (separation > margin) return {};
   Manifold<D> manifold;
   manifold.normal = normal;
-  add_point(centre - (radius + 0.5f * separation) * normal, separation, 0, a_to_b, manifold);
+  add_point(centre - (radius + 0.5f * separation) * normal, separation, 0, manifold);
   return manifold;
 }
 
@@ -54,10 +54,10 @@ struct Placed {
 };
 
 /// A manifold of b against a as one of a against b: the frame is a's in both.
-using Against = Manifold<3> (*)(const Placed<3>&, const Placed<3>&, const Vec<3>&, float);
+using Against = Manifold<3> (*)(const Placed<3>&, const Placed<3>&, float);
 static Manifold<3> turned_round(Against against, const Placed<3>& a, const Placed<3>& b,
-                                const Vec<3>& a_to_b, float margin) {
-  return flipped(against(b, a, a_to_b, margin));
+                                float margin) {
+  return flipped(against(b, a, margin));
 }
 
 static Hull hull_of(const Placed<2>& placed) {
@@ -65,19 +65,17 @@ static Hull hull_of(const Placed<2>& placed) {
 }
 
 /// Pairs with at least one hull; `a` is the one whose kind comes later in ShapeKind.
-static Manifold<2> collide_hulls(const Placed<2>& a, const Placed<2>& b, const Vec<2>& a_to_b,
-                                 float margin) {
+static Manifold<2> collide_hulls(const Placed<2>& a, const Placed<2>& b, float margin) {
   const bool a_half_space = a.shape.kind == ShapeKind::kHalfSpace;
   const bool b_half_space = b.shape.kind == ShapeKind::kHalfSpace;
-  if (a_half_space)
-    return half_space_against_hull(a.normal(), a.offset(), hull_of(b), a_to_b, margin);
+  if (a_half_space) return half_space_against_hull(a.normal(), a.offset(), hull_of(b), margin);
   if (b_half_space)
-    return flipped(half_space_against_hull(b.normal(), b.offset(), hull_of(a), a_to_b, margin));
+    return flipped(half_space_against_hull(b.normal(), b.offset(), hull_of(a), margin));
   if (b.shape.kind == ShapeKind::kBall)
-    return hull_against_ball(hull_of(a), b.centre(), b.shape.radius, a_to_b, margin);
+    return hull_against_ball(hull_of(a), b.centre(), b.shape.radius, margin);
   if (a.shape.kind == ShapeKind::kBall)
-    return flipped(hull_against_ball(hull_of(b), a.centre(), a.shape.radius, a_to_b, margin));
-  return hull_against_hull(hull_of(a), hull_of(b), a_to_b, margin);
+    return flipped(hull_against_ball(hull_of(b), a.centre(), a.shape.radius, margin));
+  return hull_against_hull(hull_of(a), hull_of(b), margin);
 }
 
 static bool is_rod(const Shape<3>& shape) {
@@ -93,22 +91,20 @@ static Rod rod_of(const Placed<3>& placed) {
 }
 
 /// A half-space or triangle `a` against anything that is neither.
-static Manifold<3> against_surface(const Placed<3>& a, const Placed<3>& b, const Vec<3>& a_to_b,
-                                   float margin) {
+static Manifold<3> against_surface(const Placed<3>& a, const Placed<3>& b, float margin) {
   const bool half_space = a.shape.kind == ShapeKind::kHalfSpace;
   if (half_space && is_rod(b.shape))
-    return half_space_against_rod(a.normal(), a.offset(), rod_of(b), a_to_b, margin);
+    return half_space_against_rod(a.normal(), a.offset(), rod_of(b), margin);
   Solid solid_b;
   if (!is_rod(b.shape)) place(b.shape, b.polyhedra, b.rotation, b.position, solid_b);
-  if (half_space) return half_space_against_solid(a.normal(), a.offset(), solid_b, a_to_b, margin);
+  if (half_space) return half_space_against_solid(a.normal(), a.offset(), solid_b, margin);
   Solid triangle;
   place(a.shape, a.polyhedra, a.rotation, a.position, triangle);
-  if (is_rod(b.shape)) return triangle_against_rod(triangle, rod_of(b), a_to_b, margin);
-  return triangle_against_solid(triangle, solid_b, a_to_b, margin);
+  if (is_rod(b.shape)) return triangle_against_rod(triangle, rod_of(b), margin);
+  return triangle_against_solid(triangle, solid_b, margin);
 }
 
-static Manifold<3> against_solid(const Placed<3>& a, const Placed<3>& b, const Vec<3>& a_to_b,
-                                 float margin) {
+static Manifold<3> against_solid(const Placed<3>& a, const Placed<3>& b, float margin) {
   const bool boxes = a.shape.kind == ShapeKind::kBox && b.shape.kind == ShapeKind::kBox;
   if (!boxes && !is_rod(b.shape) &&
       a_face_parts(a.shape, a.rotation, b.shape, b.rotation, b.position - a.position, a.polyhedra,
@@ -116,11 +112,11 @@ static Manifold<3> against_solid(const Placed<3>& a, const Placed<3>& b, const V
     return {};
   Solid solid_a;
   place(a.shape, a.polyhedra, a.rotation, a.position, solid_a);
-  if (is_rod(b.shape)) return solid_against_rod(solid_a, rod_of(b), a_to_b, margin);
+  if (is_rod(b.shape)) return solid_against_rod(solid_a, rod_of(b), margin);
   Solid solid_b;
   place(b.shape, b.polyhedra, b.rotation, b.position, solid_b);
-  return boxes ? box_against_box(solid_a, solid_b, a_to_b, margin)
-               : solid_against_solid(solid_a, solid_b, a_to_b, margin);
+  return boxes ? box_against_box(solid_a, solid_b, margin)
+               : solid_against_solid(solid_a, solid_b, margin);
 }
 
 static bool is_surface(const Shape<3>& shape) {
@@ -128,15 +124,13 @@ static bool is_surface(const Shape<3>& shape) {
 }
 
 /// Pairs with at least one box, hull, triangle or capsule.
-static Manifold<3> collide_hulls(const Placed<3>& a, const Placed<3>& b, const Vec<3>& a_to_b,
-                                 float margin) {
+static Manifold<3> collide_hulls(const Placed<3>& a, const Placed<3>& b, float margin) {
   if (is_surface(a.shape) && is_surface(b.shape)) return {};
-  if (is_surface(a.shape)) return against_surface(a, b, a_to_b, margin);
-  if (is_surface(b.shape)) return turned_round(against_surface, a, b, a_to_b, margin);
-  if (is_rod(a.shape) && is_rod(b.shape))
-    return rod_against_rod(rod_of(a), rod_of(b), a_to_b, margin);
-  if (is_rod(a.shape)) return turned_round(against_solid, a, b, a_to_b, margin);
-  return against_solid(a, b, a_to_b, margin);
+  if (is_surface(a.shape)) return against_surface(a, b, margin);
+  if (is_surface(b.shape)) return turned_round(against_surface, a, b, margin);
+  if (is_rod(a.shape) && is_rod(b.shape)) return rod_against_rod(rod_of(a), rod_of(b), margin);
+  if (is_rod(a.shape)) return turned_round(against_solid, a, b, margin);
+  return against_solid(a, b, margin);
 }
 
 template <int D>
@@ -148,15 +142,14 @@ Manifold<D> collide(const Shape<D>& a, const Pose<D>& pose_a, const Shape<D>& b,
   const bool ball_a = a.kind == ShapeKind::kBall;
   const bool ball_b = b.kind == ShapeKind::kBall;
   if (ball_a && ball_b)
-    return ball_against_ball(placed_a.centre(), a.radius, placed_b.centre(), b.radius, a_to_b,
-                             margin);
+    return ball_against_ball(placed_a.centre(), a.radius, placed_b.centre(), b.radius, margin);
   if (a.kind == ShapeKind::kHalfSpace && ball_b)
     return half_space_against_ball(placed_a.normal(), placed_a.offset(), placed_b.centre(),
-                                   b.radius, a_to_b, margin);
+                                   b.radius, margin);
   if (b.kind == ShapeKind::kHalfSpace && ball_a)
     return flipped(half_space_against_ball(placed_b.normal(), placed_b.offset(), placed_a.centre(),
-                                           a.radius, a_to_b, margin));
-  return collide_hulls(placed_a, placed_b, a_to_b, margin);
+                                           a.radius, margin));
+  return collide_hulls(placed_a, placed_b, margin);
 }
 
 template Manifold<2> collide(const Shape<2>&, const Pose<2>&, const Shape<2>&, const Pose<2>&,

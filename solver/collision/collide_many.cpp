@@ -29,26 +29,13 @@ class OneByOne {
       shape_ = &a;
     }
     const Vec<2> a_to_b = pair.pose_b.position - pair.pose_a.position;
-    return hull_against_hull(hull_, make_hull(b, pair.pose_b.rotation, a_to_b), a_to_b,
-                             pair.margin);
+    return hull_against_hull(hull_, make_hull(b, pair.pose_b.rotation, a_to_b), pair.margin);
   }
 
  private:
   const Shape<2>* shape_ = nullptr;  ///< Whose hull it is.
   Hull hull_;
 };
-
-static Manifold<2> manifold_of(const FewCorneredPoints& found, const PlacedPair<2>& pair) {
-  Manifold<2> manifold;
-  manifold.normal = {{found.normal[0], found.normal[1]}};
-  const Vec<2> a_to_b = pair.pose_b.position - pair.pose_a.position;
-  for (const FewCorneredPoints::Point& point : found.points) {
-    if (point.separation > pair.margin) continue;
-    add_point(Vec<2>{{point.at[0], point.at[1]}}, point.separation,
-              static_cast<std::uint32_t>(point.feature), a_to_b, manifold);
-  }
-  return manifold;
-}
 
 /// Which pairs of a call wait for lanes.
 struct Waiting {
@@ -63,15 +50,7 @@ static void collide_block(const Collider<2>& collider, const PlacedPair<2>* pair
   LaneIndices<W> in_lane;
   for (int lane = 0; lane < kLaneCount<W>; ++lane)
     in_lane[lane] = waiting[lane < used ? lane : used - 1];
-  FewCorneredPoints found[kLaneCount<W>];
-  FewCornered<W>::collide(collider.shapes, pairs, in_lane, found);
-  for (int lane = 0; lane < used; ++lane) {
-    const std::uint32_t pair = in_lane[lane];
-    if (found[lane].outcome == static_cast<float>(FewCorneredOutcome::kApart))
-      manifolds[pair].point_count = 0;
-    else
-      manifolds[pair] = manifold_of(found[lane], pairs[pair]);
-  }
+  FewCornered<W>::collide(collider.shapes, pairs, in_lane, manifolds);
 }
 
 /// The pairs that wait, W at a time. The last ones, where they would leave three quarters of the

@@ -30,6 +30,22 @@ template <int W>
   }
 }
 
+/// Integers as a record has them, in place of floats, from numbers and back.
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> bits_of_integers(const Lanes<W>& numbers) {
+  const auto integers = __builtin_convertvector(numbers.raw, typename Lanes<W>::Mask);
+  Lanes<W> bits;
+  static_assert(sizeof bits.raw == sizeof integers);
+  std::memcpy(&bits.raw, &integers, sizeof integers);
+  return bits;
+}
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> numbers_of_bits(const Lanes<W>& bits) {
+  typename Lanes<W>::Mask integers;
+  std::memcpy(&integers, &bits.raw, sizeof integers);
+  return Lanes<W>(__builtin_convertvector(integers, typename Lanes<W>::Raw));
+}
+
 template <int W>
 [[gnu::always_inline]] inline Corners<W> corners_of(const Shape<2>* shapes,
                                                     const LaneIndices<W>& shape,
@@ -47,10 +63,10 @@ template <int W>
     corners.normals[2 * half] = rotate(rotation, Vec<2, L>{{xy[0], xy[1]}});
     corners.normals[2 * half + 1] = rotate(rotation, Vec<2, L>{{xy[2], xy[3]}});
   }
-  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
-    corners.radius.raw[lane] = shapes[shape[lane]].radius;
-    corners.last.raw[lane] = static_cast<float>(shapes[shape[lane]].vertex_count - 1);
-  }
+  L rest[4];  // vertex_count, ghosts, radius, offset.
+  gather_floats<W>(shapes, shape, float_at(shapes[0], shapes[0].vertex_count), rest);
+  corners.radius = rest[2];
+  corners.last = numbers_of_bits<W>(rest[0]) - L(1.0f);
   repeat_first<W>(corners.last < L(1.5f), 2, corners);
   repeat_first<W>(corners.last < L(2.5f), 3, corners);
   return corners;
@@ -182,13 +198,8 @@ template <int W>
 struct LanePoints {
   Vec<2, Lanes<W>> normal;  ///< From the reference to the other.
   LanePoint<W> points[2];
-  Lanes<W> outcome;
+  Lanes<W> apart;  ///< 1 where there are no points, else 0.
 };
-
-template <int W>
-[[gnu::always_inline]] inline Lanes<W> number_of(FewCorneredOutcome outcome) {
-  return Lanes<W>(static_cast<float>(outcome));
-}
 
 /// The incident edge cut to the width of the reference edge: clip_edges in lanes.
 template <int W>
@@ -196,15 +207,13 @@ template <int W>
   using L = Lanes<W>;
   const L zero = L(0.0f);
   const L one = L(1.0f);
-  const L apart = number_of<W>(FewCorneredOutcome::kApart);
   const Vec<2, L>(&q)[2] = facing.other;
   const L width = sqrt(dot(facing.span, facing.span));
   const Vec<2, L> tangent = (one / width) * facing.span;
   const L x[2] = {dot(q[0] - facing.from, tangent), dot(q[1] - facing.from, tangent)};
   LanePoints<W> clipped;
   clipped.normal = facing.normal;
-  clipped.outcome = select(
-      x[1] < zero, apart, select(x[0] > width, apart, number_of<W>(FewCorneredOutcome::kTouching)));
+  clipped.apart = select(x[1] < zero, one, select(x[0] > width, one, zero));
 
   const L reach = facing.radius + facing.other_radius;
   const L run = x[1] - x[0];
@@ -260,8 +269,7 @@ template <int W>
   const L feature = L(static_cast<float>(0x400)) +
                     facing.feature(select(s == zero, facing.edge, facing.edge_end),
                                    select(t == zero, facing.incident, facing.incident_end));
-  const L touching = select(separation > margin, number_of<W>(FewCorneredOutcome::kApart),
-                            number_of<W>(FewCorneredOutcome::kTouching));
+  const L apart = select(separation > margin, one, zero);
   for (int i = 0; i < 2; ++i) {
     points.normal[i] = select(corners, direction[i], points.normal[i]);
     points.points[0].at[i] = select(corners, at[i], points.points[0].at[i]);
@@ -269,45 +277,62 @@ template <int W>
   points.points[0].separation = select(corners, separation, points.points[0].separation);
   points.points[0].feature = select(corners, feature, points.points[0].feature);
   points.points[1].separation = select(corners, L(3.0e38f), points.points[1].separation);
-  points.outcome = select(corners, touching, points.outcome);
+  points.apart = select(corners, apart, points.apart);
 }
 
+/// Points that are farther apart than the margin are none; where the first is, the second takes its
+/// place.
 template <int W>
-[[gnu::always_inline]] inline void write_points(const LanePoints<W>& points,
-                                                typename Lanes<W>::Mask flipped,
-                                                FewCorneredPoints (&into)[kLaneCount<W>]) {
+[[gnu::always_inline]] inline void write_manifolds(const LanePoints<W>& found,
+                                                   typename Lanes<W>::Mask flipped,
+                                                   const Lanes<W>& margin,
+                                                   const LaneIndices<W>& pair_in_lane,
+                                                   Manifold<2>* manifolds) {
   using L = Lanes<W>;
-  LaneIndices<W> rows;
-  for (int lane = 0; lane < kLaneCount<W>; ++lane) rows[lane] = static_cast<std::uint32_t>(lane);
-  const Vec<2, L> back = -points.normal;
-  const L head[4] = {select(flipped, back[0], points.normal[0]),
-                     select(flipped, back[1], points.normal[1]), points.outcome, L(0.0f)};
-  scatter_columns<W>(head, kAllLanes<W>, 0, rows, into);
+  static_assert(offsetof(Manifold<2>, point_count) == 2 * sizeof(float));
+  static_assert(offsetof(Manifold<2>, points) == 3 * sizeof(float));
+  static_assert(sizeof(ManifoldPoint<2>) == sizeof(Quad));
+  const L zero = L(0.0f);
+  const L one = L(1.0f);
+  L rows[2][4];
+  L is_point[2];
   for (int i = 0; i < 2; ++i) {
-    const LanePoint<W>& point = points.points[i];
-    const L row[4] = {point.at[0], point.at[1], point.separation, point.feature};
-    scatter_columns<W>(row, kAllLanes<W>, i + 1, rows, into);
+    const LanePoint<W>& point = found.points[i];
+    rows[i][0] = point.at[0];
+    rows[i][1] = point.at[1];
+    rows[i][2] = point.separation;
+    rows[i][3] = bits_of_integers(point.feature);
+    is_point[i] = select(point.separation > margin, zero, one);
   }
+  for (int k = 0; k < 4; ++k) rows[0][k] = select(is_point[0] > zero, rows[0][k], rows[1][k]);
+  const L count = select(found.apart > zero, zero, is_point[0] + is_point[1]);
+  const Vec<2, L> back = -found.normal;
+  const L head[4] = {select(flipped, back[0], found.normal[0]),
+                     select(flipped, back[1], found.normal[1]), bits_of_integers(count),
+                     rows[0][0]};
+  scatter_floats<W>(head, kAllLanes<W>, 0, pair_in_lane, manifolds);
+  for (int i = 0; i < 2; ++i)
+    scatter_floats<W>(rows[i], kAllLanes<W>, 3 + 4 * i, pair_in_lane, manifolds);
 }
 
 template <int W>
 void FewCornered<W>::collide(const Shape<2>* shapes, const PlacedPair<2>* pairs,
-                             const LaneIndices<W>& pair_in_lane,
-                             FewCorneredPoints (&points)[kLaneCount<W>]) {
+                             const LaneIndices<W>& pair_in_lane, Manifold<2>* manifolds) {
   using L = Lanes<W>;
   static_assert(offsetof(PlacedPair<2>, pose_b) == sizeof(Quad));
   L pose_a[4];
   L pose_b[4];
   gather_columns<W>(pairs, pair_in_lane, 0, pose_a);
   gather_columns<W>(pairs, pair_in_lane, 1, pose_b);
+  static_assert(sizeof(PlacedPair<2>) == offsetof(PlacedPair<2>, margin) + sizeof(float));
+  L rest[4];
+  gather_floats<W>(pairs, pair_in_lane, sizeof(PlacedPair<2>) / sizeof(float) - 4, rest);
+  const L margin = rest[3];
   LaneIndices<W> shape_a;
   LaneIndices<W> shape_b;
-  L margin;
   for (int lane = 0; lane < kLaneCount<W>; ++lane) {
-    const PlacedPair<2>& pair = pairs[pair_in_lane[lane]];
-    shape_a[lane] = pair.shape_a;
-    shape_b[lane] = pair.shape_b;
-    margin.raw[lane] = pair.margin;
+    shape_a[lane] = pairs[pair_in_lane[lane]].shape_a;
+    shape_b[lane] = pairs[pair_in_lane[lane]].shape_b;
   }
   const Vec<2, L> a_to_b = {{pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]}};
   const Corners<W> a = corners_of<W>(shapes, shape_a, {{pose_a[2], pose_a[3]}}, Vec<2, L>::zero());
@@ -332,8 +357,8 @@ void FewCornered<W>::collide(const Shape<2>* shapes, const PlacedPair<2>* pairs,
   const L ends_may_be_closest = select(separation > L(1.0e-4f), one, capsules);
   const L asks = select(farthest > limit, zero, ends_may_be_closest);
   if (any_above_zero(asks)) join_closest_corners(facing, asks, margin, found);
-  found.outcome = select(farthest > limit, number_of<W>(FewCorneredOutcome::kApart), found.outcome);
-  write_points(found, is_flipped, points);
+  found.apart = select(farthest > limit, one, found.apart);
+  write_manifolds(found, is_flipped, margin, pair_in_lane, manifolds);
 }
 
 }  // namespace cycloid::solver

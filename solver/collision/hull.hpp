@@ -57,19 +57,18 @@ inline Greatest greatest_of(Lanes<4> values) {
 Hull make_hull(const Shape<2>& shape, const Rotation<2>& rotation, const Vec<2>& position);
 
 // All manifolds below have the normal from the first to the second shape and are relative to body
-// a, whose centre is the origin; `a_to_b` is the centre of body b.
+// a, whose centre is the origin.
 
-Manifold<2> hull_against_ball(const Hull& hull, const Vec<2>& centre, float radius,
-                              const Vec<2>& a_to_b, float margin);
+Manifold<2> hull_against_ball(const Hull& hull, const Vec<2>& centre, float radius, float margin);
 
 /// Separating axes over the edges of both, then the incident edge clipped to the reference edge;
 /// where the cores are apart and their closest features are two vertices, the line between them.
 /// Source: Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013), in the plane.
-Manifold<2> hull_against_hull(const Hull& a, const Hull& b, const Vec<2>& a_to_b, float margin);
+Manifold<2> hull_against_hull(const Hull& a, const Hull& b, float margin);
 
 /// The two deepest vertices. `offset` is of the plane through `normal` in the same frame; the
 /// normal of the manifold is the half-space's.
 Manifold<2> half_space_against_hull(const Vec<2>& normal, float offset, const Hull& hull,
-                                    const Vec<2>& a_to_b, float margin);
+                                    float margin);
 
 }  // namespace cycloid::solver

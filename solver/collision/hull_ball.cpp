@@ -37,10 +37,10 @@ Hull make_hull(const Shape<2>& shape, const Rotation<2>& rotation, const Vec<2>&
 }
 
 static Manifold<2> one_point(const Vec<2>& normal, const Vec<2>& surface, float separation,
-                             std::uint32_t feature, const Vec<2>& a_to_b) {
+                             std::uint32_t feature) {
   Manifold<2> manifold;
   manifold.normal = normal;
-  add_point(surface + (0.5f * separation) * normal, separation, feature, a_to_b, manifold);
+  add_point(surface + (0.5f * separation) * normal, separation, feature, manifold);
   return manifold;
 }
 
@@ -63,7 +63,7 @@ static bool predecessor_sees(const Hull& segment, const Vec<2>& centre) {
 }
 
 static Manifold<2> segment_against_ball(const Hull& segment, const Vec<2>& centre, float radius,
-                                        const Vec<2>& a_to_b, float margin) {
+                                        float margin) {
   const Vec<2> a = segment.vertex(0);
   const Vec<2> b = segment.vertex(1);
   const Vec<2> normal = segment.normal(0);
@@ -76,7 +76,7 @@ static Manifold<2> segment_against_ball(const Hull& segment, const Vec<2>& centr
   const bool after = along > dot(edge, edge);
   if (!before && !after)
     return one_point(normal, a + (along / dot(edge, edge)) * edge + segment.radius * normal,
-                     height - reach, 0, a_to_b);
+                     height - reach, 0);
   if (neighbour_takes_end(segment, before, centre)) return {};
   // Both edges may meet the ball at this vertex; the one that ends there keeps it.
   if (before && predecessor_sees(segment, centre)) return {};
@@ -85,13 +85,12 @@ static Manifold<2> segment_against_ball(const Hull& segment, const Vec<2>& centr
   const float distance = length(offset);
   if (distance > reach + margin) return {};
   const Vec<2> direction = normalized_or(offset, normal);
-  return one_point(direction, corner + segment.radius * direction, distance - reach, before ? 1 : 2,
-                   a_to_b);
+  return one_point(direction, corner + segment.radius * direction, distance - reach,
+                   before ? 1 : 2);
 }
 
-Manifold<2> hull_against_ball(const Hull& hull, const Vec<2>& centre, float radius,
-                              const Vec<2>& a_to_b, float margin) {
-  if (hull.one_sided) return segment_against_ball(hull, centre, radius, a_to_b, margin);
+Manifold<2> hull_against_ball(const Hull& hull, const Vec<2>& centre, float radius, float margin) {
+  if (hull.one_sided) return segment_against_ball(hull, centre, radius, margin);
   const float reach = hull.radius + radius;
   std::uint32_t best = 0;
   float highest = -3.0e38f;
@@ -116,7 +115,7 @@ Manifold<2> hull_against_ball(const Hull& hull, const Vec<2>& centre, float radi
   // Feature: the edge, or 16 + the vertex.
   if (highest < 0.0f || (!before && !after)) {
     const Vec<2> foot = centre - highest * normal;
-    return one_point(normal, foot + hull.radius * normal, highest - reach, best, a_to_b);
+    return one_point(normal, foot + hull.radius * normal, highest - reach, best);
   }
   const Vec<2> corner = before ? a : b;
   const Vec<2> offset = centre - corner;
@@ -124,7 +123,7 @@ Manifold<2> hull_against_ball(const Hull& hull, const Vec<2>& centre, float radi
   if (distance > reach + margin) return {};
   const Vec<2> direction = normalized_or(offset, normal);
   return one_point(direction, corner + hull.radius * direction, distance - reach,
-                   16 + (before ? best : next), a_to_b);
+                   16 + (before ? best : next));
 }
 
 }  // namespace cycloid::solver

@@ -87,8 +87,8 @@ static std::uint32_t feature_id(const Reference& reference, std::uint32_t own,
 }
 
 /// The line between two vertices, where these are what is closest; no point otherwise.
-static bool vertex_against_vertex(const Reference& reference, const Edge& incident,
-                                  const Vec<2>& a_to_b, float margin, Manifold<2>& manifold) {
+static bool vertex_against_vertex(const Reference& reference, const Edge& incident, float margin,
+                                  Manifold<2>& manifold) {
   const Edge edge = edge_of(reference.hull, reference.edge);
   const Vec<2> p = reference.hull.vertex(edge.from);
   const Vec<2> q = reference.other.vertex(incident.from);
@@ -110,15 +110,14 @@ static bool vertex_against_vertex(const Reference& reference, const Edge& incide
   const Vec<2> surface = on_reference + reference.hull.radius * direction;
   const std::uint32_t feature = feature_id(reference, s == 0.0f ? edge.from : edge.to,
                                            t == 0.0f ? incident.from : incident.to);
-  add_point(surface + (0.5f * separation) * direction, separation, 0x400u | feature, a_to_b,
-            manifold);
+  add_point(surface + (0.5f * separation) * direction, separation, 0x400u | feature, manifold);
   return true;
 }
 
 /// The incident edge cut to the width of the reference edge: first the end that comes first along
 /// the edge of shape a.
-static void clip_edges(const Reference& reference, const Edge& incident, const Vec<2>& a_to_b,
-                       float margin, Manifold<2>& manifold) {
+static void clip_edges(const Reference& reference, const Edge& incident, float margin,
+                       Manifold<2>& manifold) {
   const Edge edge = edge_of(reference.hull, reference.edge);
   const Vec<2> normal = reference.hull.normal(reference.edge);
   const Vec<2> from = reference.hull.vertex(edge.from);
@@ -146,7 +145,7 @@ static void clip_edges(const Reference& reference, const Edge& incident, const V
     // Midway between the two surfaces along the normal.
     const Vec<2> at =
         point + (0.5f * (reference.hull.radius - reference.other.radius - height)) * normal;
-    add_point(at, separation, feature | static_cast<std::uint32_t>(side), a_to_b, manifold);
+    add_point(at, separation, feature | static_cast<std::uint32_t>(side), manifold);
   }
 }
 
@@ -166,7 +165,7 @@ static bool chain_allows(const Hull& segment, const Vec<2>& normal) {
   return corner > 0.0f && left >= 0.0f;
 }
 
-Manifold<2> hull_against_hull(const Hull& a, const Hull& b, const Vec<2>& a_to_b, float margin) {
+Manifold<2> hull_against_hull(const Hull& a, const Hull& b, float margin) {
   const float reach = a.radius + b.radius;
   const Axis axis_a = deepest_axis(a, b);
   if (axis_a.separation > reach + margin) return {};
@@ -187,15 +186,14 @@ Manifold<2> hull_against_hull(const Hull& a, const Hull& b, const Vec<2>& a_to_b
   const bool chain = a.one_sided || b.one_sided;
   // Two capsules in one line have no separating axis among their sides.
   const bool ends_may_be_closest = axis.separation > 1.0e-4f || (a.count == 2 && b.count == 2);
-  if (ends_may_be_closest && !chain &&
-      vertex_against_vertex(reference, incident, a_to_b, margin, manifold))
+  if (ends_may_be_closest && !chain && vertex_against_vertex(reference, incident, margin, manifold))
     return manifold;
-  clip_edges(reference, incident, a_to_b, margin, manifold);
+  clip_edges(reference, incident, margin, manifold);
   return manifold;
 }
 
 Manifold<2> half_space_against_hull(const Vec<2>& normal, float offset, const Hull& hull,
-                                    const Vec<2>& a_to_b, float margin) {
+                                    float margin) {
   std::uint32_t first = 0;
   std::uint32_t second = 0;
   float height[8];
@@ -216,7 +214,7 @@ Manifold<2> half_space_against_hull(const Vec<2>& normal, float offset, const Hu
     const float separation = height[i] - hull.radius;
     if (separation > margin) continue;
     const Vec<2> at = hull.vertex(i) - (hull.radius + 0.5f * separation) * normal;
-    add_point(at, separation, i, a_to_b, manifold);
+    add_point(at, separation, i, manifold);
   }
   return manifold;
 }

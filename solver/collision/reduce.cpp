@@ -87,9 +87,9 @@ static Choice choose(std::span<const Candidate> candidates, const Vec<3>& normal
   return choice;
 }
 
-void reduce(std::span<const Candidate> candidates, const Vec<3>& a_to_b, Manifold<3>& manifold) {
+void reduce(std::span<const Candidate> candidates, Manifold<3>& manifold) {
   const auto add = [&](const Candidate& candidate) {
-    add_point(candidate.at, candidate.separation, candidate.feature, a_to_b, manifold);
+    add_point(candidate.at, candidate.separation, candidate.feature, manifold);
   };
   if (candidates.size() <= 4) {
     for (const Candidate& candidate : candidates) add(candidate);

@@ -90,7 +90,7 @@ Span clip_to_face(const Solid& solid, std::uint32_t face, const Rod& rod, float 
 }
 
 void add_span(const Solid& solid, std::uint32_t face, const Rod& rod, const Span& span,
-              const Vec<3>& a_to_b, float margin, Manifold<3>& manifold) {
+              float margin, Manifold<3>& manifold) {
   const Vec<3> on_face = solid.vertices[solid.edges[solid.faces[face].edge].origin];
   const Vec<3> along = rod.to - rod.from;
   const float run = span.to - span.from;
@@ -104,7 +104,7 @@ void add_span(const Solid& solid, std::uint32_t face, const Rod& rod, const Span
     const float separation = dot(manifold.normal, at - on_face) - rod.radius;
     if (separation > margin) continue;
     add_point(at - (rod.radius + 0.5f * separation) * manifold.normal, separation,
-              clip_feature(false, face, k, 0), a_to_b, manifold);
+              clip_feature(false, face, k, 0), manifold);
   }
 }
 
@@ -124,8 +124,7 @@ SegmentPair nearest_to_edge(const Solid& solid, std::uint32_t edge, const Rod& r
 }
 
 void add_edge_points(const Solid& solid, std::uint32_t edge, const Rod& rod,
-                     const SegmentPair& pair, const Vec<3>& a_to_b, float margin,
-                     Manifold<3>& manifold) {
+                     const SegmentPair& pair, float margin, Manifold<3>& manifold) {
   const Vec<3> normal = manifold.normal;
   AxisPoints ends[2];
   if (parallel_points(edge_rod(solid, edge), rod, normal, ends)) {
@@ -133,7 +132,7 @@ void add_edge_points(const Solid& solid, std::uint32_t edge, const Rod& rod,
       const float separation = ends[k].height - rod.radius;
       if (separation > margin) continue;
       add_point(ends[k].on_b - (rod.radius + 0.5f * separation) * normal, separation,
-                edge_feature(edge + k), a_to_b, manifold);
+                edge_feature(edge + k), manifold);
     }
     if (manifold.point_count > 0) return;
   }
@@ -142,8 +141,7 @@ void add_edge_points(const Solid& solid, std::uint32_t edge, const Rod& rod,
   std::uint32_t feature = edge_feature(edge);
   if (pair.fraction_a == 0.0f) feature = corner_feature(half.origin);
   if (pair.fraction_a == 1.0f) feature = corner_feature(solid.edges[half.twin].origin);
-  add_point(pair.on_b - (rod.radius + 0.5f * separation) * normal, separation, feature, a_to_b,
-            manifold);
+  add_point(pair.on_b - (rod.radius + 0.5f * separation) * normal, separation, feature, manifold);
 }
 
 }  // namespace cycloid::solver

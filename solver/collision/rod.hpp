@@ -50,7 +50,7 @@ Span clip_to_face(const Solid& solid, std::uint32_t face, const Rod& rod, float 
 /// the span has no length. Points farther than `margin` are left out.
 /// The features are those of a clip of the rod's ends, whatever side plane cuts them.
 void add_span(const Solid& solid, std::uint32_t face, const Rod& rod, const Span& span,
-              const Vec<3>& a_to_b, float margin, Manifold<3>& manifold);
+              float margin, Manifold<3>& manifold);
 
 /// Lengths below this are rounding where a solid meets a rod, m: a few units in the last place of
 /// what is subtracted.
@@ -74,7 +74,6 @@ Rod edge_rod(const Solid& solid, std::uint32_t edge);
 /// Adds the rod's points against a half-edge (even) or one of its ends: two where it lies along the
 /// edge. The manifold's normal is set; `pair` is nearest_to_edge.
 void add_edge_points(const Solid& solid, std::uint32_t edge, const Rod& rod,
-                     const SegmentPair& pair, const Vec<3>& a_to_b, float margin,
-                     Manifold<3>& manifold);
+                     const SegmentPair& pair, float margin, Manifold<3>& manifold);
 
 }  // namespace cycloid::solver

@@ -8,7 +8,7 @@ static Vec<3> midway(const Rod& a, const Rod& b, const Vec<3>& on_a, const Vec<3
   return 0.5f * (on_a + on_b) + (0.5f * (a.radius - b.radius)) * normal;
 }
 
-Manifold<3> rod_against_rod(const Rod& a, const Rod& b, const Vec<3>& a_to_b, float margin) {
+Manifold<3> rod_against_rod(const Rod& a, const Rod& b, float margin) {
   const float reach = a.radius + b.radius;
   const SegmentPair pair = nearest_points(a.from, a.to, b.from, b.to);
   if (pair.distance - reach > margin) return {};
@@ -20,11 +20,11 @@ Manifold<3> rod_against_rod(const Rod& a, const Rod& b, const Vec<3>& a_to_b, fl
       const float separation = ends[k].height - reach;
       if (separation > margin) continue;
       add_point(midway(a, b, ends[k].on_a, ends[k].on_b, manifold.normal), separation, 1 + k,
-                a_to_b, manifold);
+                manifold);
     }
     if (manifold.point_count > 0) return manifold;
   }
-  add_point(midway(a, b, pair.on_a, pair.on_b, manifold.normal), pair.distance - reach, 0, a_to_b,
+  add_point(midway(a, b, pair.on_a, pair.on_b, manifold.normal), pair.distance - reach, 0,
             manifold);
   return manifold;
 }

@@ -49,27 +49,23 @@ struct Rod {
 };
 
 // All manifolds below have the normal [unit] from the first to the second shape and are relative to
-// body a, whose centre is the origin; `a_to_b` is the centre of body b. Points closer than `margin`
-// [m]; no point: apart.
+// body a, whose centre is the origin. Points closer than `margin` [m]; no point: apart.
 
 /// Separating axes over faces and pairs of edges, then a face clipped to a face or the nearest
 /// points of two edges; at most four points, chosen by `reduce`.
-Manifold<3> solid_against_solid(const Solid& a, const Solid& b, const Vec<3>& a_to_b, float margin);
+Manifold<3> solid_against_solid(const Solid& a, const Solid& b, float margin);
 /// The same for two boxes, whose 15 axes are known beforehand.
-Manifold<3> box_against_box(const Solid& a, const Solid& b, const Vec<3>& a_to_b, float margin);
-Manifold<3> solid_against_rod(const Solid& solid, const Rod& rod, const Vec<3>& a_to_b,
-                              float margin);
-Manifold<3> rod_against_rod(const Rod& a, const Rod& b, const Vec<3>& a_to_b, float margin);
+Manifold<3> box_against_box(const Solid& a, const Solid& b, float margin);
+Manifold<3> solid_against_rod(const Solid& solid, const Rod& rod, float margin);
+Manifold<3> rod_against_rod(const Rod& a, const Rod& b, float margin);
 Manifold<3> half_space_against_solid(const Vec<3>& normal, float offset, const Solid& solid,
-                                     const Vec<3>& a_to_b, float margin);
+                                     float margin);
 Manifold<3> half_space_against_rod(const Vec<3>& normal, float offset, const Rod& rod,
-                                   const Vec<3>& a_to_b, float margin);
+                                   float margin);
 /// A triangle of a mesh meets what is on its free side, and where a neighbour continues it, only
 /// along normals between its own and the neighbour's, so that nothing stumbles over inner edges.
-Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, const Vec<3>& a_to_b,
-                                   float margin);
-Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Vec<3>& a_to_b,
-                                 float margin);
+Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, float margin);
+Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, float margin);
 
 /// A candidate for a contact point: `at` lies midway between the surfaces, relative to body a.
 struct Candidate {
@@ -84,7 +80,7 @@ struct Candidate {
 /// normal; of equals the deepest, then the first. A depth within 1e-4 m of the deepest counts as
 /// equal, and a length or area within 1e-3 of the largest, so that resting boxes keep their points.
 /// Fewer than four where the others add nothing.
-void reduce(std::span<const Candidate> candidates, const Vec<3>& a_to_b, Manifold<3>& manifold);
+void reduce(std::span<const Candidate> candidates, Manifold<3>& manifold);
 
 /// The feature of a point: unique within a manifold, and the same while the same features touch.
 /// `reference` tells which shape has the reference face; `face` and `edge` count at most 255.

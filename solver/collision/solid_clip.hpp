@@ -134,13 +134,11 @@ bool nearest_of(const Solid& a, const Solid& b, float slack, float margin, Neare
 /// The manifold of a face: what is clipped, and where that is not as deep as the solids are, also
 /// where they are deepest. But where that is in quite another direction, or nothing is under the
 /// face, the manifold of the nearest features instead.
-Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, const Vec<3>& a_to_b,
-                        float margin);
+Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, float margin);
 
 /// One point between the nearest points of the two edges; where these are not on the pair's axis,
 /// the manifold of the nearest features.
-Manifold<3> touch_edges(const EdgePair& pair, const AxisTolerance& tolerance, const Vec<3>& a_to_b,
-                        float margin);
+Manifold<3> touch_edges(const EdgePair& pair, const AxisTolerance& tolerance, float margin);
 
 /// The feature of a point between two edges, unlike any of `clip_feature`.
 constexpr std::uint32_t edge_feature(std::uint32_t edge_a, std::uint32_t edge_b) {

@@ -131,13 +131,13 @@ static float lowest(const Solid& solid, std::uint32_t face, const Rod& rod, cons
 }
 
 static Manifold<3> outside(const Solid& solid, const Rod& rod, const NearestOnSolid& nearest,
-                           const Vec<3>& a_to_b, float margin) {
+                           float margin) {
   Manifold<3> manifold;
   const float slack = rounding_of(solid, rod);
   if (nearest.face != kNone) {
     manifold.normal = solid.normals[nearest.face];
     const Span span = clip_to_face(solid, nearest.face, rod, slack);
-    add_span(solid, nearest.face, rod, span, a_to_b, margin, manifold);
+    add_span(solid, nearest.face, rod, span, margin, manifold);
     return manifold;
   }
   const Vec<3> normal = normal_between(edge_rod(solid, nearest.edge), rod, nearest.pair);
@@ -147,17 +147,16 @@ static Manifold<3> outside(const Solid& solid, const Rod& rod, const NearestOnSo
   if (span.from <= span.to && dot(normal, solid.normals[face]) > kLiesFlat &&
       lowest(solid, face, rod, span) <= nearest.distance + 1.0e-4f * rod.radius + slack) {
     manifold.normal = solid.normals[face];
-    add_span(solid, face, rod, span, a_to_b, margin, manifold);
+    add_span(solid, face, rod, span, margin, manifold);
     if (manifold.point_count > 0) return manifold;
   }
   manifold.normal = normal;
-  add_edge_points(solid, nearest.edge, rod, nearest.pair, a_to_b, margin, manifold);
+  add_edge_points(solid, nearest.edge, rod, nearest.pair, margin, manifold);
   return manifold;
 }
 
 /// The way out of an axis inside the solid is the shallowest of the axes.
-static Manifold<3> inside(const Solid& solid, const Rod& rod, const Survey& survey,
-                          const Vec<3>& a_to_b, float margin) {
+static Manifold<3> inside(const Solid& solid, const Rod& rod, const Survey& survey, float margin) {
   Manifold<3> manifold;
   const float slack = rounding_of(solid, rod);
   if (survey.edge != kNone && survey.edge_separation > survey.face_separation + 2.0f * slack) {
@@ -165,7 +164,7 @@ static Manifold<3> inside(const Solid& solid, const Rod& rod, const Survey& surv
     const SegmentPair pair = nearest_to_edge(solid, survey.edge, rod);
     const float separation = survey.edge_separation - rod.radius;
     add_point(pair.on_b - (rod.radius + 0.5f * separation) * manifold.normal, separation,
-              edge_feature(survey.edge), a_to_b, manifold);
+              edge_feature(survey.edge), manifold);
     return manifold;
   }
   manifold.normal = solid.normals[survey.face];
@@ -173,12 +172,11 @@ static Manifold<3> inside(const Solid& solid, const Rod& rod, const Survey& surv
   // not, the way out is across the border, where the clipped rod is about as deep.
   Span span = clip_to_face(solid, survey.face, rod, slack);
   if (span.from > span.to) span = {0.0f, 1.0f};
-  add_span(solid, survey.face, rod, span, a_to_b, margin, manifold);
+  add_span(solid, survey.face, rod, span, margin, manifold);
   return manifold;
 }
 
-Manifold<3> solid_against_rod(const Solid& solid, const Rod& rod, const Vec<3>& a_to_b,
-                              float margin) {
+Manifold<3> solid_against_rod(const Solid& solid, const Rod& rod, float margin) {
   const float reach = rod.radius + margin;
   Survey survey;
   if (!survey_faces(solid, rod, reach, survey)) return {};
@@ -187,9 +185,9 @@ Manifold<3> solid_against_rod(const Solid& solid, const Rod& rod, const Vec<3>& 
   if (max(survey.face_separation, survey.edge_separation) > slack) {
     const NearestOnSolid nearest = nearest_outside(solid, rod, survey);
     if (nearest.distance > reach) return {};
-    if (nearest.distance > slack) return outside(solid, rod, nearest, a_to_b, margin);
+    if (nearest.distance > slack) return outside(solid, rod, nearest, margin);
   }
-  return inside(solid, rod, survey, a_to_b, margin);
+  return inside(solid, rod, survey, margin);
 }
 
 }  // namespace cycloid::solver

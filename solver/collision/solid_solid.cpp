@@ -163,18 +163,17 @@ bool find_axes(const Solid& a, const Solid& b, const AxisTolerance& tolerance, f
 }
 
 /// Source: Gregorius, "The Separating Axis Test between Convex Polyhedra" (GDC 2013).
-Manifold<3> solid_against_solid(const Solid& a, const Solid& b, const Vec<3>& a_to_b,
-                                float margin) {
+Manifold<3> solid_against_solid(const Solid& a, const Solid& b, float margin) {
   const AxisTolerance tolerance(min(size_of(a), size_of(b)));
   Axes axes;
   if (!find_axes(a, b, tolerance, margin, axes)) return {};
   const EdgeAxis& edges = axes.edges;
   if (edges.separation > kNoSeparation)
     return touch_edges({a, b, edges.edge_a, edges.edge_b, edges.normal, edges.separation},
-                       tolerance, a_to_b, margin);
+                       tolerance, margin);
   const bool on_b = axes.on_b(tolerance);
   const FaceAxis& face = axes.faces[on_b ? 1 : 0];
-  return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, a_to_b, margin);
+  return touch_faces(opposed_to(a, b, face.face, on_b, face.separation), tolerance, margin);
 }
 
 }  // namespace cycloid::solver

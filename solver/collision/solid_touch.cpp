@@ -42,8 +42,7 @@ static void add_nearest(const Nearest& nearest, const Vec<3>& normal, float marg
 }
 
 static Manifold<3> touch_nearest(const Solid& a, const Solid& b, const Nearest& nearest,
-                                 const AxisTolerance& tolerance, const Vec<3>& a_to_b,
-                                 float margin) {
+                                 const AxisTolerance& tolerance, float margin) {
   Clipped clipped;
   clipped.count = 0;
   clipped.lowest = 1.0e30f;
@@ -54,15 +53,14 @@ static Manifold<3> touch_nearest(const Solid& a, const Solid& b, const Nearest& 
     add_nearest(nearest, nearest.normal, margin, clipped);
   Manifold<3> manifold;
   manifold.normal = nearest.normal;
-  reduce(std::span(clipped.candidates).first(clipped.count), a_to_b, manifold);
+  reduce(std::span(clipped.candidates).first(clipped.count), manifold);
   return manifold;
 }
 
 /// As touch_faces where what is clipped is not as deep as the axis says. Not inlined, as it is
 /// rare.
 [[gnu::noinline]] static Manifold<3> touch_beside(const FacePair& pair,
-                                                  const AxisTolerance& tolerance,
-                                                  const Vec<3>& a_to_b, float margin,
+                                                  const AxisTolerance& tolerance, float margin,
                                                   Clipped& clipped) {
   const Vec<3> outwards = pair.reference.normals[pair.reference_face];
   Manifold<3> manifold;
@@ -81,29 +79,27 @@ static Manifold<3> touch_nearest(const Solid& a, const Solid& b, const Nearest& 
     if (clipped.count == 0 || clipped.lowest > nearest.separation + tolerance.face) {
       const float aside = length(cross(manifold.normal, nearest.normal)) * abs(nearest.separation);
       if (clipped.count == 0 || aside > tolerance.edge)
-        return touch_nearest(a, b, nearest, tolerance, a_to_b, margin);
+        return touch_nearest(a, b, nearest, tolerance, margin);
       add_nearest(nearest, manifold.normal, margin, clipped);
     }
   }
-  reduce(std::span(clipped.candidates).first(clipped.count), a_to_b, manifold);
+  reduce(std::span(clipped.candidates).first(clipped.count), manifold);
   return manifold;
 }
 
-Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, const Vec<3>& a_to_b,
-                        float margin) {
+Manifold<3> touch_faces(const FacePair& pair, const AxisTolerance& tolerance, float margin) {
   Clipped clipped;
   clip_faces(pair, margin, clipped);
   if (clipped.lowest > pair.separation + tolerance.face)
-    return touch_beside(pair, tolerance, a_to_b, margin, clipped);
+    return touch_beside(pair, tolerance, margin, clipped);
   const Vec<3> outwards = pair.reference.normals[pair.reference_face];
   Manifold<3> manifold;
   manifold.normal = pair.on_b ? -outwards : outwards;
-  reduce(std::span(clipped.candidates).first(clipped.count), a_to_b, manifold);
+  reduce(std::span(clipped.candidates).first(clipped.count), manifold);
   return manifold;
 }
 
-Manifold<3> touch_edges(const EdgePair& pair, const AxisTolerance& tolerance, const Vec<3>& a_to_b,
-                        float margin) {
+Manifold<3> touch_edges(const EdgePair& pair, const AxisTolerance& tolerance, float margin) {
   const Solid& a = pair.a;
   const Solid& b = pair.b;
   const SegmentPair points =
@@ -114,12 +110,12 @@ Manifold<3> touch_edges(const EdgePair& pair, const AxisTolerance& tolerance, co
   if (length(between - pair.separation * pair.normal) > 1.0e-4f) {
     Nearest nearest;
     if (!nearest_of(a, b, tolerance.slack(), margin, nearest)) return {};
-    return touch_nearest(a, b, nearest, tolerance, a_to_b, margin);
+    return touch_nearest(a, b, nearest, tolerance, margin);
   }
   Manifold<3> manifold;
   manifold.normal = pair.normal;
   add_point(points.on_a + 0.5f * between, pair.separation, edge_feature(pair.edge_a, pair.edge_b),
-            a_to_b, manifold);
+            manifold);
   return manifold;
 }
 

@@ -100,7 +100,7 @@ static float gap_along(const Solid& triangle, const Solid& solid, const Vec<3>& 
 /// line between the nearest points.
 static TriangleContact touch_nearest(const Solid& triangle, const Solid& solid,
                                      const NearestEdges& nearest, const Contacting& best,
-                                     float preferred, const Vec<3>& a_to_b, float margin) {
+                                     float preferred, float margin) {
   const SegmentPair& pair = nearest.pair;
   if (pair.distance > margin) return {{}, true};
   std::uint32_t edges = 1u << nearest.edge;
@@ -114,15 +114,13 @@ static TriangleContact touch_nearest(const Solid& triangle, const Solid& solid,
   if (max(gap, best.separation) < 0.0f) return {{}, true};
   TriangleContact contact;
   contact.manifold.normal = gap > best.separation ? line : best.normal;
-  add_point(pair.on_a + 0.5f * between, max(gap, best.separation), kNearest, a_to_b,
-            contact.manifold);
+  add_point(pair.on_a + 0.5f * between, max(gap, best.separation), kNearest, contact.manifold);
   contact.complete = gap >= pair.distance - preferred;
   return contact;
 }
 
 static TriangleContact touch_edges(const Solid& triangle, const Solid& solid,
-                                   const Contacting& best, float preferred, const Vec<3>& a_to_b,
-                                   float margin) {
+                                   const Contacting& best, float preferred, float margin) {
   const Vec<3> from = solid.vertices[solid.edges[best.solid_edge].origin];
   const Vec<3> to = solid.vertices[solid.edges[best.solid_edge + 1].origin];
   const SegmentPair pair =
@@ -131,18 +129,18 @@ static TriangleContact touch_edges(const Solid& triangle, const Solid& solid,
   const bool meet = pair.distance <= abs(best.separation) + preferred;
   if (best.separation > 0.0f && !meet)
     return touch_nearest(triangle, solid, nearest_edges(triangle, solid, margin), best, preferred,
-                         a_to_b, margin);
+                         margin);
   TriangleContact contact;
   contact.manifold.normal = best.normal;
   add_point(0.5f * (pair.on_a + pair.on_b), best.separation,
-            kEdges | best.solid_edge | (best.triangle_edge << 20), a_to_b, contact.manifold);
+            kEdges | best.solid_edge | (best.triangle_edge << 20), contact.manifold);
   contact.complete = meet;
   return contact;
 }
 
 static TriangleContact touch_faces(const Solid& triangle, const Solid& solid,
                                    const Contacting& best, const Judgement& judgement,
-                                   const Vec<3>& a_to_b, float margin) {
+                                   float margin) {
   const float size = length(solid.vertices[0] - solid.centre);
   const float slack = judgement.strict ? 2.0f * judgement.preferred : 1.0e-5f * size;
   const bool own = best.kind == Contacting::kOwnFace;
@@ -164,7 +162,7 @@ static TriangleContact touch_faces(const Solid& triangle, const Solid& solid,
     } else if (max(best.separation, best.elsewhere()) > 0.0f) {
       const NearestEdges nearest = nearest_edges(triangle, solid, margin);
       if (nearest.pair.distance < heights.lowest - judgement.preferred)
-        return touch_nearest(triangle, solid, nearest, best, judgement.preferred, a_to_b, margin);
+        return touch_nearest(triangle, solid, nearest, best, judgement.preferred, margin);
     } else {
       complete = own && heights.count > 0;
     }
@@ -172,20 +170,19 @@ static TriangleContact touch_faces(const Solid& triangle, const Solid& solid,
   TriangleContact contact;
   contact.manifold.normal = best.normal;
   contact.complete = complete;
-  reduce(std::span<const Candidate>(heights.found).first(heights.count), a_to_b, contact.manifold);
+  reduce(std::span<const Candidate>(heights.found).first(heights.count), contact.manifold);
   return contact;
 }
 
 TriangleContact triangle_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
-                                 const Judgement& judgement, const Vec<3>& a_to_b, float margin) {
+                                 const Judgement& judgement, float margin) {
   const float preferred = judgement.preferred;
   // Apart along another axis, so they do not overlap, however deep one is behind the other's face.
   if (best.separation < 0.0f && best.elsewhere() > 0.0f)
     return touch_nearest(triangle, solid, nearest_edges(triangle, solid, margin), best, preferred,
-                         a_to_b, margin);
-  if (best.kind == Contacting::kEdges)
-    return touch_edges(triangle, solid, best, preferred, a_to_b, margin);
-  return touch_faces(triangle, solid, best, judgement, a_to_b, margin);
+                         margin);
+  if (best.kind == Contacting::kEdges) return touch_edges(triangle, solid, best, preferred, margin);
+  return touch_faces(triangle, solid, best, judgement, margin);
 }
 
 }  // namespace cycloid::solver

@@ -39,6 +39,6 @@ struct TriangleContact {
 /// apart whose nearest features are others it is one point between those, where the surface allows
 /// the line between them as a normal.
 TriangleContact triangle_contact(const Solid& triangle, const Solid& solid, const Contacting& best,
-                                 const Judgement& judgement, const Vec<3>& a_to_b, float margin);
+                                 const Judgement& judgement, float margin);
 
 }  // namespace cycloid::solver

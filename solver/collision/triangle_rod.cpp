@@ -76,19 +76,18 @@ static WayOut way_out(const Solid& triangle, const Rod& rod) {
 
 /// The rod's axis goes through the triangle: the shallowest way out to the free side.
 static void go_through(const Solid& triangle, const Rod& rod, const Span& span,
-                       const Heights& heights, const Vec<3>& a_to_b, float margin,
-                       Manifold<3>& manifold) {
+                       const Heights& heights, float margin, Manifold<3>& manifold) {
   const WayOut way = way_out(triangle, rod);
   const float slack = 2.0f * rounding_of(triangle, rod);
   if (way.edge == kNone || way.separation <= min(heights.from, heights.to) + slack) {
-    add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
+    add_span(triangle, 0, rod, span, margin, manifold);
     return;
   }
   manifold.normal = way.normal;
   const SegmentPair pair = nearest_to_edge(triangle, 2 * way.edge, rod);
   const float separation = way.separation - rod.radius;
   add_point(pair.on_b - (rod.radius + 0.5f * separation) * way.normal, separation,
-            edge_feature(2 * way.edge), a_to_b, manifold);
+            edge_feature(2 * way.edge), manifold);
 }
 
 /// Whether a rod that is behind the triangle where it is over it goes on to the free side beyond a
@@ -112,8 +111,7 @@ static bool leaves_over_neighbour(const Solid& triangle, const Rod& rod, const S
 /// by half of its radius where it is over the triangle, and is then pushed out along the
 /// triangle's normal, and not at all where it is beside it. The other half of the radius is for
 /// what lies on the back: triangles back to back would otherwise pull it through.
-Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Vec<3>& a_to_b,
-                                 float margin) {
+Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, float margin) {
   const float reach = rod.radius + margin;
   const float from = height_at(triangle, rod, 0.0f);
   const float to = height_at(triangle, rod, 1.0f);
@@ -133,14 +131,14 @@ Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Ve
   if (over && !behind && (end_over || heights.low <= 0.0f)) {
     if (0.5f * (from + to) < sunk) return {};
     if (heights.low > 0.0f)
-      add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
+      add_span(triangle, 0, rod, span, margin, manifold);
     else
-      go_through(triangle, rod, span, heights, a_to_b, margin, manifold);
+      go_through(triangle, rod, span, heights, margin, manifold);
     return manifold;
   }
   // Behind the triangle as a whole, or a part of what goes through its neighbour.
   if (behind && (max(from, to) <= 0.0f || leaves_over_neighbour(triangle, rod, span, to > from))) {
-    if (0.5f * (from + to) >= sunk) add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
+    if (0.5f * (from + to) >= sunk) add_span(triangle, 0, rod, span, margin, manifold);
     return manifold;
   }
 
@@ -156,13 +154,13 @@ Manifold<3> triangle_against_rod(const Solid& triangle, const Rod& rod, const Ve
   const bool barely_behind =
       behind && upwards < -kFlat && heights.low >= sunk && 0.5f * (from + to) >= sunk;
   if (over && (barely_behind || (!behind && (lies_flat || leaning == Leaning::kOwnOnly)))) {
-    add_span(triangle, 0, rod, span, a_to_b, margin, manifold);
+    add_span(triangle, 0, rod, span, margin, manifold);
     return manifold;
   }
   if (leaning != Leaning::kAllowed || upwards < -kFlat) return {};
   // Beside the triangle by a rounding only: in the middle of a surface, where nothing may stumble.
   manifold.normal = upwards > 1.0f - kFlat * kFlat ? triangle.normals[0] : normal;
-  add_edge_points(triangle, 2 * nearest.edge, rod, nearest.pair, a_to_b, margin, manifold);
+  add_edge_points(triangle, 2 * nearest.edge, rod, nearest.pair, margin, manifold);
   return manifold;
 }
 

@@ -141,8 +141,7 @@ static bool survey(const Solid& triangle, const Solid& solid, const Judgement& j
 
 /// A solid is met from the free side, by a rule without memory: its centre must not lie behind the
 /// triangle's plane, so what is pushed out is sunk by less than half of its extent.
-Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, const Vec<3>& a_to_b,
-                                   float margin) {
+Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, float margin) {
   Contacting own;
   own.normal = triangle.normals[0];
   if (dot(own.normal, solid.centre - triangle.vertices[0]) < 0.0f) return {};
@@ -154,7 +153,7 @@ Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, co
   Contacting best = own;
   if (!survey(triangle, solid, judgement, margin, best)) return {};
   if (is_another_s(best, judgement.preferred)) return {};
-  const TriangleContact first = triangle_contact(triangle, solid, best, judgement, a_to_b, margin);
+  const TriangleContact first = triangle_contact(triangle, solid, best, judgement, margin);
   if (first.complete) return first.manifold;
 
   // An axis that is almost the best, and was taken since it changes less from tick to tick, need
@@ -162,7 +161,7 @@ Manifold<3> triangle_against_solid(const Solid& triangle, const Solid& solid, co
   judgement.strict = true;
   best = own;
   if (!survey(triangle, solid, judgement, margin, best)) return {};
-  const TriangleContact again = triangle_contact(triangle, solid, best, judgement, a_to_b, margin);
+  const TriangleContact again = triangle_contact(triangle, solid, best, judgement, margin);
   return again.manifold.point_count > 0 ? again.manifold : first.manifold;
 }
 

@@ -73,7 +73,8 @@ static void mark_pushed(const StepContext<D>& context, StepScratch<D>& scratch) 
       return motion.velocity + spin_cross(motion.spin, arm);
     };
     const Vec<D> velocity_a = velocity_of(live.body_a, manifold.points[0].anchor_a);
-    const Vec<D> velocity_b = velocity_of(live.body_b, manifold.points[0].anchor_b);
+    const Vec<D> velocity_b =
+        velocity_of(live.body_b, anchor_b_of(manifold.points[0], live.between));
     const float along_a = dot(manifold.normal, velocity_a);
     const float along_b = dot(manifold.normal, velocity_b);
     mark(b, min(along_a, along_b), velocity_b);

@@ -58,14 +58,17 @@ template <int D>
 static void write_contacts(const StepScratch<D>& scratch, PhaseWriter& writer) {
   auto live = scratch.live.begin();
   for (std::size_t i = 0; i < scratch.contacts.size(); ++i) {
-    Manifold<D> manifold;
     ContactFound<D> found;
     found.contact = scratch.contacts[i];
-    if (live != scratch.live.end() && live->contact == i) manifold = live++->manifold;
-    if (manifold.point_count > 0) found.normal = manifold.normal;
-    for (std::uint32_t p = 0; p < manifold.point_count; ++p) {
-      const ManifoldPoint<D>& point = manifold.points[p];
-      found.manifold[p] = {point.feature, point.anchor_a, point.anchor_b, point.separation};
+    if (live != scratch.live.end() && live->contact == i) {
+      const Manifold<D>& manifold = live->manifold;
+      found.normal = manifold.normal;
+      for (std::uint32_t p = 0; p < manifold.point_count; ++p) {
+        const ManifoldPoint<D>& point = manifold.points[p];
+        found.manifold[p] = {point.feature, point.anchor_a, anchor_b_of(point, live->between),
+                             point.separation};
+      }
+      ++live;
     }
     writer.object("contact", i, found);
   }

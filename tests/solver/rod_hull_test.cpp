@@ -158,7 +158,7 @@ TEST(RodCollision, CapsuleHullPairsMatchTheDistanceInDoublePrecision) {
     if (i % 4 == 2)
       rod.to = rod.from + draw.within(0.2f, 1.0f) * (hull.vertices[0] - hull.vertices[2]);
     const double expected = hull_distance(shape, hull, rod) - rod.radius;
-    const Manifold<3> m = solid_against_rod(hull, rod, kZero, 0.1f);
+    const Manifold<3> m = solid_against_rod(hull, rod, 0.1f);
     ASSERT_TRUE(is_finite(m));
     if (std::abs(expected - 0.1) < 1e-5) continue;
     ASSERT_EQ(m.point_count == 0, expected > 0.1) << expected << " " << i;

@@ -29,7 +29,7 @@ static Throws throw_beside(const Shape<3>& a, const Shape<3>& b, const Polyhedra
     const Vec<3> a_to_b = pose_b.position - pose_a.position;
     const Solid solid_a = placed(a, {Vec<3>::zero(), pose_a.rotation}, pool);
     const Solid solid_b = placed(b, {a_to_b, pose_b.rotation}, pool);
-    const Manifold<3> manifold = solid_against_solid(solid_a, solid_b, a_to_b, kMargin);
+    const Manifold<3> manifold = solid_against_solid(solid_a, solid_b, kMargin);
     const bool parted = a_face_parts(a, pose_a.rotation, b, pose_b.rotation, a_to_b, pool, kMargin);
     if (manifold.point_count == 0) ++throws.apart;
     if (parted) ++throws.parted;

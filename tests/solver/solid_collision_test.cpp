@@ -56,7 +56,7 @@ TEST(SolidCollision, StackedBoxesMeetInTheirCorners) {
   for (const ManifoldPoint<3>& point : manifold.points) {
     EXPECT_NEAR(point.separation, -0.01f, 1e-6f);
     EXPECT_NEAR(point.anchor_a[1], 0.495f, 1e-6f);  // Midway between 0.5 and 0.49.
-    EXPECT_NEAR(point.anchor_b[1], -0.495f, 1e-6f);
+    EXPECT_NEAR(anchor_b_of(point, {{0.0f, 0.99f, 0.0f}})[1], -0.495f, 1e-6f);
   }
 }
 

@@ -128,8 +128,7 @@ TEST(SolidCollision, ReduceKeepsTheNearSideOfASolidWithinTheMargin) {
   // A cube of 2 mm, upside down: its far corners are within the margin, and come first.
   const Rotation<3> over = turn_about({{1, 0, 0}}, 2.0 * kRight);
   const Solid solid = placed(solid_box(1e-3f, 1e-3f, 1e-3f), {{{0, 1e-3f, 0}}, over});
-  const Manifold<3> manifold =
-      half_space_against_solid({{0, 1, 0}}, 0.0f, solid, {{0, 1e-3f, 0}}, 0.02f);
+  const Manifold<3> manifold = half_space_against_solid({{0, 1, 0}}, 0.0f, solid, 0.02f);
   ASSERT_EQ(manifold.point_count, 4u);
   for (const ManifoldPoint<3>& point : manifold.points) EXPECT_NEAR(point.separation, 0.0f, 1e-9f);
 }
@@ -140,7 +139,7 @@ TEST(SolidCollision, ReduceKeepsTheEndsOfALine) {
     line[i] = {{{static_cast<float>(i), 0, 0}}, i == 3 ? -0.02f : -0.01f, i};
   Manifold<3> manifold;
   manifold.normal = {{0, 1, 0}};
-  reduce(line, Vec<3>::zero(), manifold);
+  reduce(line, manifold);
   ASSERT_EQ(manifold.point_count, 3u);
   EXPECT_EQ(manifold.points[0].feature, 0u);
   EXPECT_EQ(manifold.points[1].feature, 3u);
@@ -158,8 +157,8 @@ TEST(SolidCollision, BoxesAsHullsMeetAsBoxes) {
                             turn_about({{u(random), u(random), u(random)}}, 2.0)};
     const Solid solid_a = placed(kCube, pose_a);
     const Solid solid_b = placed(b, pose_b);
-    const Manifold<3> boxes = box_against_box(solid_a, solid_b, pose_b.position, 0.02f);
-    const Manifold<3> hulls = solid_against_solid(solid_a, solid_b, pose_b.position, 0.02f);
+    const Manifold<3> boxes = box_against_box(solid_a, solid_b, 0.02f);
+    const Manifold<3> hulls = solid_against_solid(solid_a, solid_b, 0.02f);
     // Edge pairs come in another order, so of ties within the tolerance another may win.
     if (dot(boxes.normal, hulls.normal) < 0.9999f || boxes.point_count == 0) continue;
     ++compared;
@@ -236,7 +235,7 @@ TEST(SolidCollision, RandomHullsAgreeWithEveryAxisTried) {
                             turn_about({{u(random), u(random), u(random)}}, 3.0)};
     const Solid a = placed(one.shape, pose_a, one.pool);
     const Solid b = placed(other.shape, pose_b, other.pool);
-    const Manifold<3> manifold = solid_against_solid(a, b, pose_b.position, 0.02f);
+    const Manifold<3> manifold = solid_against_solid(a, b, 0.02f);
     const double best = best_gap(a, b);
     if (best > 0.02 + 1e-5) {
       EXPECT_EQ(manifold.point_count, 0u) << i;

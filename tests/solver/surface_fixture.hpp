@@ -75,14 +75,11 @@ std::vector<Manifold<3>> meet(const std::vector<Solid>& triangles, F manifold) {
 }
 inline std::vector<Manifold<3>> meet(const std::vector<Solid>& triangles, const Rod& rod,
                                      float margin = 0.01f) {
-  return meet(triangles,
-              [&](const Solid& t) { return triangle_against_rod(t, rod, rod.from, margin); });
+  return meet(triangles, [&](const Solid& t) { return triangle_against_rod(t, rod, margin); });
 }
 inline std::vector<Manifold<3>> meet(const std::vector<Solid>& triangles, const Solid& solid,
                                      float margin = 0.01f) {
-  return meet(triangles, [&](const Solid& t) {
-    return triangle_against_solid(t, solid, solid.centre, margin);
-  });
+  return meet(triangles, [&](const Solid& t) { return triangle_against_solid(t, solid, margin); });
 }
 
 inline float deepest(const std::vector<Manifold<3>>& all) {
