@@ -33,9 +33,10 @@ struct alignas(16) Acceleration {
   float rate[4 * kVelocityQuads<D>];
 };
 
-/// What the sweeps need of a body besides its motion, constant during a tick.
+/// What the sweeps need of a body besides its motion, constant during a tick. In whole quads, for
+/// lanes to gather.
 template <int D>
-struct BodyMass {
+struct alignas(16) BodyMass {
   float inverse_mass;
   Inertia<D> inverse_inertia;  ///< World frame at the start of the tick.
 };

@@ -12,6 +12,7 @@
 #include "solver/collision/pair_cache.hpp"
 #include "solver/constraints/contact.hpp"
 #include "solver/constraints/joint_row.hpp"
+#include "solver/constraints/live_contact.hpp"
 #include "solver/constraints/pin_block.hpp"
 #include "solver/direct/island_solver.hpp"
 #include "solver/direct/tree_solver.hpp"
@@ -105,21 +106,6 @@ struct KeptByWorld {
   ActiveContacts active_contacts;
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
-};
-
-/// A contact that is solved in this tick, with what is at hand where its shapes are collided and
-/// lies far apart later.
-template <int D>
-struct LiveContact {
-  std::uint32_t contact;  ///< Its place among all contacts.
-  std::uint32_t body_a;
-  std::uint32_t body_b;
-  std::uint32_t material_a;
-  std::uint32_t material_b;
-  bool a_is_ball;  ///< About its centre of mass.
-  bool b_is_ball;
-  Vec<D> between;  ///< Centre of b from that of a, m.
-  Manifold<D> manifold;
 };
 
 /// The contacts of a tick in the order of their shapes, or those of one chunk of its pairs.

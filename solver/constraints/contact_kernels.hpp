@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/constraints/contact.hpp"
+#include "solver/constraints/live_contact.hpp"
 
 namespace cycloid::solver {
 
@@ -34,6 +35,10 @@ struct LoadBounds {
 /// contact_kernels_avx2.cpp, from one text (contact_sweeps.hpp). Units of other files only call.
 template <int D, int W>
 struct ContactKernels {
+  /// Contacts places[0, count) of `in.live` into a block that is all zeros, but for its extra.
+  /// @pre 0 < count <= kLaneCount<W>.
+  static void fill(const ContactInputs<D>& in, const int* places, int count,
+                   ContactBlock<D, W>& block);
   /// What follows from the numbers of each lane once they are there: tangents, effective masses,
   /// shares, the coefficient of friction, whose square stands in its place, and which lanes carry
   /// more than springs hold within the bounds (ContactBlock::loaded).

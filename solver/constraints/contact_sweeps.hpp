@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/constraints/contact_fill.hpp"
 #include "solver/constraints/contact_kernels.hpp"
 #include "solver/constraints/contact_lanes.hpp"
 #include "solver/constraints/contact_position.hpp"
@@ -58,6 +59,12 @@ template <int D, int W>
   const auto used = block.points[0].normal_mass > L(0.0f);
   const L sum = block.mass_a.inverse_mass + block.mass_b.inverse_mass;
   block.share_b = select(used, block.mass_b.inverse_mass / select(used, sum, L(1.0f)), L(0.0f));
+}
+
+template <int D, int W>
+void ContactKernels<D, W>::fill(const ContactInputs<D>& in, const int* places, int count,
+                                ContactBlock<D, W>& block) {
+  fill_block(in, places, count, block);
 }
 
 template <int D, int W>

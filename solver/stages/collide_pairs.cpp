@@ -3,7 +3,7 @@
 #include "solver/collision/collide.hpp"
 #include "solver/lane_widths.hpp"
 #include "solver/stages/active_contacts.hpp"
-#include "solver/stages/live_contact.hpp"
+#include "solver/stages/add_live.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -61,20 +61,27 @@ static void take_points(const Manifold<D>& manifold, float slop, const Contact<D
 /// The old contacts from `old` on whose key is below `key`: their pairs have no points, or were not
 /// found.
 template <int D>
-static void pass_old(const OldContacts<D>& contacts, std::uint64_t key, std::uint32_t& old,
-                     ContactList<D>& list) {
+[[gnu::always_inline]] static inline void pass_old(const OldContacts<D>& contacts,
+                                                   std::uint64_t key, std::uint32_t& old,
+                                                   ContactList<D>& list) {
   for (; old < contacts.size() && contacts.key(old) < key; ++old)
     if (contacts[old].touching != 0) list.ended.push_back(contacts.place(old));
+}
+
+template <int D>
+static std::uint64_t key_of(const PlacedPair<D>& pair) {
+  return ShapePair{pair.shape_a, pair.shape_b}.key();
 }
 
 /// Lists the contact of a pair with points. `old` is where to go on among the old contacts.
 template <int D>
 static void add_contact(const WorldState<D>& state, const OldContacts<D>& contacts,
-                        const ShapePair& pair, const Manifold<D>& manifold, std::uint32_t& old,
-                        ContactList<D>& list) {
+                        const PlacedPair<D>& pair, const Manifold<D>& manifold,
+                        MaterialPair& materials, std::uint32_t& old, ContactList<D>& list) {
   if (manifold.point_count == 0) return;
-  add_live(state, pair, manifold, static_cast<std::uint32_t>(list.contacts.size()), list.live);
-  const bool persists = old < contacts.size() && contacts.key(old) == pair.key();
+  add_live(state, pair, manifold, static_cast<std::uint32_t>(list.contacts.size()), materials,
+           list.live);
+  const bool persists = old < contacts.size() && contacts.key(old) == key_of(pair);
   const Contact<D>* before = persists ? &contacts[old] : nullptr;
   Contact<D>& contact = list.contacts.emplace_back();
   contact.shape_a = pair.shape_a;
@@ -106,6 +113,7 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
   const OldContacts<D> contacts(state, scratch.active_contacts);
   std::uint32_t old = range.begin > 0 ? contacts.lower_bound(key_at(range.begin)) : 0;
   list.found.resize(kPairGrain);
+  MaterialPair materials(state.materials);
   for (int begin = range.begin; begin < range.end; begin += kPairGrain) {
     const int size = std::min(kPairGrain, range.end - begin);
     PlacedPair<D> batch[kPairGrain];
@@ -113,9 +121,9 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
       batch[i] = placed(context, state, pairs[static_cast<std::size_t>(begin + i)]);
     collider(batch, size, list.found.data());
     for (int i = 0; i < size; ++i) {
-      const ShapePair& pair = pairs[static_cast<std::size_t>(begin + i)];
-      pass_old(contacts, pair.key(), old, list);
-      add_contact(state, contacts, pair, list.found[static_cast<std::size_t>(i)], old, list);
+      pass_old(contacts, key_of(batch[i]), old, list);
+      add_contact(state, contacts, batch[i], list.found[static_cast<std::size_t>(i)], materials,
+                  old, list);
     }
   }
   const bool is_last = range.end == static_cast<int>(pairs.size());

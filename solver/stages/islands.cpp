@@ -2,7 +2,7 @@
 
 #include "solver/collision/collide.hpp"
 #include "solver/stages/active_contacts.hpp"
-#include "solver/stages/live_contact.hpp"
+#include "solver/stages/add_live.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trace.hpp"
 #include "solver/union_find.hpp"
@@ -78,6 +78,7 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
   const std::vector<LiveContact<D>>& before = scratch.live_before;
   scratch.live_before.assign(scratch.live.begin(), scratch.live.end());
   auto next = before.begin();
+  MaterialPair materials(state.materials);
   scratch.live.clear();
   for (std::uint32_t i = 0; i < scratch.contacts.size(); ++i) {
     if (next != before.end() && next->contact == i) {
@@ -88,14 +89,19 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
     const Shape<D>& a = state.shapes[contact.shape_a];
     const Shape<D>& b = state.shapes[contact.shape_b];
     if (scratch.awake[a.body] == 0 && scratch.awake[b.body] == 0) continue;
-    const Pose<D> pose_a{state.bodies[a.body].position, state.bodies[a.body].rotation};
-    const Pose<D> pose_b{state.bodies[b.body].position, state.bodies[b.body].rotation};
+    const Body<D>& body_a = state.bodies[a.body];
+    const Body<D>& body_b = state.bodies[b.body];
+    const PlacedPair<D> pair{{body_a.position, body_a.rotation},
+                             {body_b.position, body_b.rotation},
+                             contact.shape_a,
+                             contact.shape_b,
+                             context.tuning.speculative_distance};
     const Manifold<D> manifold =
-        collide(a, pose_a, b, pose_b, context.tuning.speculative_distance, state.polyhedra);
+        collide(a, pair.pose_a, b, pair.pose_b, pair.margin, state.polyhedra);
     // Neither body has moved since the contact was kept, so its points and impulses still belong to
     // each other; a contact that is gone all the same is solved as one without points.
     if (manifold.point_count == 0 || manifold.point_count != contact.point_count) continue;
-    add_live(state, {contact.shape_a, contact.shape_b}, manifold, i, scratch.live);
+    add_live(state, pair, manifold, i, materials, scratch.live);
   }
 }
 

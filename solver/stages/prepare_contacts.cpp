@@ -1,8 +1,8 @@
 #include <cstring>
 #include <type_traits>
 
-#include "solver/constraints/contact_lanes.hpp"
 #include "solver/constraints/contact_rolling.hpp"
+#include "solver/constraints/single_lanes.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -25,25 +25,6 @@ template <int D>
 static float rolling_radius(const Shape<D>& shape) {
   const bool round = shape.kind == ShapeKind::kBall || shape.kind == ShapeKind::kCapsule;
   return round ? shape.radius : 0.0f;
-}
-
-template <int D>
-struct PointInput {
-  const ManifoldPoint<D>& geometry;
-  const ContactPoint<D>& impulses;
-  float warm_starting;
-  bool rubs;  ///< Else the tangents begin at 0: a material may have lost its friction since.
-};
-
-template <int D, int W>
-static void set_point(typename ContactBlock<D, W>::Point& point, int lane,
-                      const PointInput<D>& in) {
-  set_lane(point.r_a, lane, in.geometry.anchor_a);
-  set_lane(point.separation, lane, in.geometry.separation);
-  set_lane(point.normal_mass, lane, 1.0f);
-  set_lane(point.normal_impulse, lane, in.warm_starting * in.impulses.normal_impulse);
-  for (int t = 0; t < Dim<D>::kTangents && in.rubs; ++t)
-    set_lane(point.tangent_impulse[t], lane, in.warm_starting * in.impulses.tangent_impulse[t]);
 }
 
 /// What gravity and forces do to a body without contacts, m/s^2.
@@ -91,52 +72,20 @@ static void set_materials(const StepContext<D>& context, const WorldState<D>& st
   block.rolls = true;
 }
 
+/// What balls and materials ask for of the contact in one lane.
 template <int D, int W>
-static void set_contact(const StepContext<D>& context, const WorldState<D>& state,
-                        const StepScratch<D>& scratch, const LiveContact<D>& live, int lane,
-                        std::size_t place, ContactBlocks<D, W>& contacts) {
+static void set_extra(const StepContext<D>& context, const WorldState<D>& state,
+                      const StepScratch<D>& scratch, const LiveContact<D>& live, int lane,
+                      std::size_t place, ContactBlocks<D, W>& contacts) {
   ContactBlock<D, W>& block = contacts.blocks[place];
   const Contact<D>& contact = scratch.contacts[live.contact];
-  const Material& material_a = state.materials[live.material_a];
-  const Material& material_b = state.materials[live.material_b];
-  const BodyMass<D>& mass_a = scratch.masses[live.body_a];
-  const BodyMass<D>& mass_b = scratch.masses[live.body_b];
-  block.body_a[lane] = live.body_a;
-  block.body_b[lane] = live.body_b;
-  block.contact[lane] = live.contact;
-  if (mass_a.inverse_mass != 0.0f) block.moves_a |= LaneBits{1} << lane;
-  if (mass_b.inverse_mass != 0.0f) block.moves_b |= LaneBits{1} << lane;
-  set_mass(block.mass_a, lane, mass_a);
-  set_mass(block.mass_b, lane, mass_b);
-  set_lane(block.normal, lane, live.manifold.normal);
-  set_lane(block.between, lane, live.between);
-  const float square_friction = material_a.friction * material_b.friction;
-  set_lane(block.friction, lane, square_friction);  // ContactKernels::complete takes the root.
-  block.turns = block.turns || can_turn(mass_a) || can_turn(mass_b);
-  block.rubs = block.rubs || square_friction > 0.0f;
   if (live.a_is_ball || live.b_is_ball)
     set_balls(state, contact, live, lane, contacts.extra_of(place), block);
-  const ContactMaterials materials = materials_of<D>(material_a, material_b);
+  const ContactMaterials materials =
+      materials_of<D>(state.materials[live.material_a], state.materials[live.material_b]);
   if (materials.restitution > 0.0f || materials.rolling_resistance > 0.0f ||
       materials.twist_resistance > 0.0f)
     set_materials(context, state, contact, live, materials, lane, contacts.extra_of(place), block);
-  if (contact.point_count > block.point_count) block.point_count = contact.point_count;
-  for (std::uint32_t p = 0; p < contact.point_count; ++p) {
-    const PointInput<D> in{live.manifold.points[p], contact.points[p], context.tuning.warm_starting,
-                           square_friction > 0.0f};
-    set_point<D, W>(block.points[p], lane, in);
-    block.has_point[p] |= LaneBits{1} << lane;
-  }
-}
-
-template <int D, int W>
-static void clear(std::uint32_t resting_body, ContactBlock<D, W>& block) {
-  static_assert(std::is_trivially_copyable_v<ContactBlock<D, W>>);
-  std::memset(&block, 0,
-              sizeof block);  // Assigned, a zero block would first be made and then copied.
-  for (std::uint32_t& body : block.body_a) body = resting_body;
-  for (std::uint32_t& body : block.body_b) body = resting_body;
-  for (std::uint32_t& contact : block.contact) contact = kNone;
 }
 
 /// Which contacts of the colouring's order a block holds.
@@ -154,7 +103,9 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch) {
   auto& out = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const Coloring& coloring = scratch.contact_coloring;
-  const auto resting = static_cast<std::uint32_t>(state.bodies.size());
+  const ContactInputs<D> inputs{scratch.live.data(), scratch.contacts.data(), scratch.masses.data(),
+                                static_cast<std::uint32_t>(state.bodies.size()),
+                                context.tuning.warm_starting};
   out.colors.clear();
   int blocks = 0;
   for (const Range& color : coloring.colors) {
@@ -169,13 +120,16 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
                             context.tuning.stabilisation == Stabilisation::kSplitImpulse;
   const auto fill = [&](int block, Range members) {
     const auto place = static_cast<std::size_t>(block);
-    clear(resting, out.blocks[place]);
+    const int* places = coloring.order.data() + members.begin;
+    const int count = members.end - members.begin;
+    static_assert(std::is_trivially_copyable_v<ContactBlock<D, W>>);
+    std::memset(&out.blocks[place], 0, sizeof out.blocks[place]);
+    ContactKernels<D, W>::fill(inputs, places, count, out.blocks[place]);
     if (always_extra) out.extra_of(place);
-    for (int i = members.begin; i < members.end; ++i)
-      set_contact(
-          context, state, scratch,
-          scratch.live[static_cast<std::size_t>(coloring.order[static_cast<std::size_t>(i)])],
-          i - members.begin, place, out);
+    for (int lane = 0; lane < count; ++lane) {
+      const LiveContact<D>& live = scratch.live[static_cast<std::size_t>(places[lane])];
+      if (live.has_extra) set_extra(context, state, scratch, live, lane, place, out);
+    }
   };
   const LoadBounds bounds = load_bounds(context);
   for (std::size_t c = 0; c < out.colors.size(); ++c) {
