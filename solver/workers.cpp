@@ -30,9 +30,18 @@ namespace cycloid::solver {
 
 /// How often a thread looks for what it waits for before it sleeps, a few hundred microseconds in
 /// all: to wake a sleeping thread takes longer than most of the hundred jobs of a step, and what
-/// one thread does alone between them takes up to that long. It yields between looks, so where
-/// there are more workers than processors the others go on meanwhile.
+/// one thread does alone between them takes up to that long. After the first looks, which take a
+/// microsecond or two, it yields in between, so where there are more workers than processors the
+/// others go on meanwhile.
 static constexpr int kLooks = 1000;
+static constexpr int kEagerLooks = 64;
+
+/// Tells the processor that a thread waits, where it can be told.
+static void pause_a_moment() {
+#if defined(__x86_64__) || defined(__i386__)
+  __builtin_ia32_pause();
+#endif
+}
 
 /// A number to wait for. Not std::atomic's own `wait`: where the system has no futex, such as on
 /// Windows, GCC 12's library looks at the number before it takes the lock that it sleeps by, and a
@@ -45,7 +54,10 @@ struct Awaited {
   void wait_while(T old) {
     for (int i = 0; i < kLooks; ++i) {
       if (value.load() != old) return;
-      std::this_thread::yield();
+      if (i < kEagerLooks)
+        pause_a_moment();
+      else
+        std::this_thread::yield();
     }
     std::unique_lock lock(mutex);
     sleepers.fetch_add(1);
@@ -66,16 +78,24 @@ struct Awaited {
   std::atomic<int> sleepers{0};
 };
 
+/// The chunks of a job that one thread begins with, and others take from once their own are done.
+/// In the next job of that size it begins with the same ones, which its cache still holds.
+struct alignas(64) Share {
+  std::atomic<int> next{0};
+  int end = 0;
+};
+
 /// The threads beside the calling one, and the job that all of them share.
 struct Workers::Threads {
   explicit Threads(int count);
   ~Threads();
-  void run_chunks();
-  void thread_main();
+  void share_out();
+  void run_chunks(std::size_t own);
+  void thread_main(std::size_t own);
 
   std::vector<std::thread> threads;
+  std::vector<Share> shares;  ///< By thread; the calling one's is the last.
   Awaited<std::uint32_t> generation;
-  std::atomic<int> next{0};
   Awaited<int> busy;
   std::atomic<bool> stop{false};
   int size = 0;
@@ -90,8 +110,9 @@ Workers::Workers(int count) : count_(count) {
 
 Workers::~Workers() = default;
 
-Workers::Threads::Threads(int count) {
-  for (int i = 0; i < count; ++i) threads.emplace_back([this] { thread_main(); });
+Workers::Threads::Threads(int count) : shares(static_cast<std::size_t>(count) + 1) {
+  for (std::size_t i = 0; i + 1 < shares.size(); ++i)
+    threads.emplace_back([this, i] { thread_main(i); });
 }
 
 Workers::Threads::~Threads() {
@@ -107,28 +128,43 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
   pool.grain = grain;
   pool.context = context;
   pool.call = call;
-  pool.next.store(0);
+  pool.share_out();
   pool.busy.value.store(static_cast<int>(pool.threads.size()));
   pool.generation.value.fetch_add(1);
   pool.generation.tell();
-  pool.run_chunks();
+  pool.run_chunks(pool.threads.size());
   // The job's fields may only be written again when every thread has left it.
   for (int busy = pool.busy.value.load(); busy != 0; busy = pool.busy.value.load())
     pool.busy.wait_while(busy);
 }
 
-void Workers::Threads::run_chunks() {
-  for (int begin = next.fetch_add(grain); begin < size; begin = next.fetch_add(grain))
-    call(context, Range{begin, begin + grain < size ? begin + grain : size});
+void Workers::Threads::share_out() {
+  const auto chunks = static_cast<std::size_t>((size + grain - 1) / grain);
+  const auto begin_of = [&](std::size_t share) {
+    return static_cast<int>(chunks * share / shares.size()) * grain;
+  };
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    shares[i].next.store(begin_of(i));
+    shares[i].end = begin_of(i + 1);
+  }
 }
 
-void Workers::Threads::thread_main() {
+void Workers::Threads::run_chunks(std::size_t own) {
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    Share& share = shares[(own + i) % shares.size()];
+    for (int begin = share.next.fetch_add(grain); begin < share.end;
+         begin = share.next.fetch_add(grain))
+      call(context, Range{begin, begin + grain < size ? begin + grain : size});
+  }
+}
+
+void Workers::Threads::thread_main(std::size_t own) {
   // Generation 0 is the constructor's: a thread that starts late still sees the first job.
   for (std::uint32_t seen = 0;;) {
     generation.wait_while(seen);
     seen = generation.value.load();
     if (stop.load()) return;
-    run_chunks();
+    run_chunks(own);
     if (busy.value.fetch_sub(1) == 1) busy.tell();
   }
 }
