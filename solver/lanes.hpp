@@ -1,5 +1,6 @@
 #pragma once
 
+#include <cstdint>
 #include <cstring>
 #ifdef CYCLOID_AVX512_UNIT
 #include <immintrin.h>
@@ -102,23 +103,35 @@ struct alignas(4 * kLaneCount<W>) Lanes {
   }
 };
 
-/// Whether any lane is above 0, and whether all are: the only questions across lanes, because their
-/// answers have no order.
+/// The lanes of a mask, a bit each.
 template <int W>
-bool any_above_zero(Lanes<W> a) {
-  float lanes[kLaneCount<W>];
-  a.store(lanes);
-  for (const float lane : lanes)
-    if (lane > 0.0f) return true;
-  return false;
+[[gnu::always_inline]] inline std::uint32_t bits_of(const typename Lanes<W>::Mask& mask) {
+#ifdef CYCLOID_AVX512_UNIT
+  if constexpr (W == kAvx512Lanes) return _mm512_movepi32_mask(reinterpret_cast<__m512i>(mask));
+#endif
+  typename Lanes<W>::Mask own{};
+  for (int lane = 0; lane < kLaneCount<W>; ++lane) own[lane] = static_cast<int>(1u << lane);
+  const typename Lanes<W>::Mask kept = mask & own;
+  if constexpr (W == 1) {
+    return static_cast<std::uint32_t>(kept[0]);
+  } else {
+    std::uint64_t pairs[kLaneCount<W> / 2];
+    std::memcpy(pairs, &kept, sizeof pairs);
+    std::uint64_t all = 0;
+    for (const std::uint64_t pair : pairs) all |= pair;
+    return static_cast<std::uint32_t>(all | all >> 32);
+  }
+}
+
+/// Whether any lane is above 0, and whether all are: beside bits_of the only questions across
+/// lanes, because their answers have no order.
+template <int W>
+[[gnu::always_inline]] inline bool any_above_zero(const Lanes<W>& a) {
+  return bits_of<W>(a > Lanes<W>(0.0f)) != 0;
 }
 template <int W>
-bool all_above_zero(Lanes<W> a) {
-  float lanes[kLaneCount<W>];
-  a.store(lanes);
-  for (const float lane : lanes)
-    if (!(lane > 0.0f)) return false;
-  return true;
+[[gnu::always_inline]] inline bool all_above_zero(const Lanes<W>& a) {
+  return bits_of<W>(a > Lanes<W>(0.0f)) == (std::uint32_t{1} << kLaneCount<W>)-1;
 }
 
 inline float max(float a, float b) {

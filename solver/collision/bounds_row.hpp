@@ -1,7 +1,6 @@
 #pragma once
 
 #include <cstdint>
-#include <cstring>
 
 #include "solver/collision/bounds.hpp"
 #include "solver/lanes.hpp"
@@ -50,12 +49,7 @@ struct BoundsRow {
     typename Lanes<4>::Mask apart{};
     for (int i = 0; i < D; ++i)
       apart = apart | (lower[i] > Lanes<4>(box.upper[i])) | (Lanes<4>(box.lower[i]) > upper[i]);
-    const typename Lanes<4>::Mask bits = {1, 2, 4, 8};
-    const auto kept = bits & ~apart;
-    std::uint64_t halves[2];
-    std::memcpy(halves, &kept, sizeof halves);
-    const std::uint64_t both = halves[0] | halves[1];
-    return static_cast<std::uint32_t>(both | both >> 32) & 15u;
+    return bits_of<4>(~apart);
   }
 };
 

@@ -56,9 +56,10 @@ void set_first_masses(const Lanes<W>& wanted, ContactBlock<D, W>& block) {
 
 /// Anew, where a point has slid farther from a centre than it was from it: the masses of the tick's
 /// start are then many times too large for the arms of now, and each row would throw its bodies
-/// harder than the one before; a body of 2 km/s blew up what it flew into.
+/// harder than the one before; a body of 2 km/s blew up what it flew into. Apart from the sweeps,
+/// which hardly ever ask for it.
 template <int D, int W>
-[[gnu::always_inline]] inline void weigh_where_slid(ContactBlock<D, W>& block) {
+[[gnu::noinline]] void weigh_where_slid(ContactBlock<D, W>& block) {
   using L = Lanes<W>;
   if (!block.turns) return;
   const auto& point = block.points[0];

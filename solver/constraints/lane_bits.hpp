@@ -14,23 +14,6 @@ template <int W>
   return (mask & static_cast<int>(bits)) != 0;
 }
 
-/// The lanes of a mask.
-template <int W>
-[[gnu::always_inline]] inline LaneBits bits_of(const typename Lanes<W>::Mask& mask) {
-  typename Lanes<W>::Mask own{};
-  for (int lane = 0; lane < kLaneCount<W>; ++lane) own[lane] = static_cast<int>(1u << lane);
-  const typename Lanes<W>::Mask kept = mask & own;
-  if constexpr (W == 1) {
-    return static_cast<LaneBits>(kept[0]);
-  } else {
-    std::uint64_t pairs[kLaneCount<W> / 2];
-    std::memcpy(pairs, &kept, sizeof pairs);
-    std::uint64_t all = 0;
-    for (const std::uint64_t pair : pairs) all |= pair;
-    return static_cast<LaneBits>(all | all >> 32);
-  }
-}
-
 /// Lanes in which a number is above 0.
 template <int W>
 [[gnu::always_inline]] inline LaneBits lanes_above_zero(const Lanes<W>& a) {
