@@ -107,7 +107,11 @@ struct alignas(4 * kLaneCount<W>) Lanes {
 template <int W>
 [[gnu::always_inline]] inline std::uint32_t bits_of(const typename Lanes<W>::Mask& mask) {
 #ifdef CYCLOID_AVX512_UNIT
-  if constexpr (W == kAvx512Lanes) return _mm512_movepi32_mask(reinterpret_cast<__m512i>(mask));
+  if constexpr (W == kAvx512Lanes) {
+    __m512i lanes;
+    std::memcpy(&lanes, &mask, sizeof lanes);
+    return _mm512_movepi32_mask(lanes);
+  }
 #endif
   typename Lanes<W>::Mask own{};
   for (int lane = 0; lane < kLaneCount<W>; ++lane) own[lane] = static_cast<int>(1u << lane);

@@ -33,15 +33,8 @@ namespace cycloid::solver {
 /// one thread does alone between them takes up to that long. After the first looks, which take a
 /// microsecond or two, it yields in between, so where there are more workers than processors the
 /// others go on meanwhile.
-static constexpr int kLooks = 1000;
-static constexpr int kEagerLooks = 64;
-
-/// Tells the processor that a thread waits, where it can be told.
-static void pause_a_moment() {
-#if defined(__x86_64__) || defined(__i386__)
-  __builtin_ia32_pause();
-#endif
-}
+static constexpr int kLooks = 2000;
+static constexpr int kEagerLooks = 1000;
 
 /// A number to wait for. Not std::atomic's own `wait`: where the system has no futex, such as on
 /// Windows, GCC 12's library looks at the number before it takes the lock that it sleeps by, and a
@@ -54,10 +47,7 @@ struct Awaited {
   void wait_while(T old) {
     for (int i = 0; i < kLooks; ++i) {
       if (value.load() != old) return;
-      if (i < kEagerLooks)
-        pause_a_moment();
-      else
-        std::this_thread::yield();
+      if (i >= kEagerLooks) std::this_thread::yield();
     }
     std::unique_lock lock(mutex);
     sleepers.fetch_add(1);
