@@ -3,32 +3,33 @@
 #include <cstdint>
 
 #include "solver/collision/bounds.hpp"
-#include "solver/lanes.hpp"
 
 namespace cycloid::solver {
 
-/// Four boxes that are asked at once which of them overlap another. An empty place overlaps none
-/// that is finite.
+/// Sixteen boxes that are asked together which of them overlap another. An empty place overlaps
+/// none that is finite.
 template <int D>
-struct BoundsRow {
-  Lanes<4> lower[D];
-  Lanes<4> upper[D];
+struct alignas(64) BoundsRow {
+  static constexpr int kBoxes = 16;
+
+  float lower[D][kBoxes];
+  float upper[D][kBoxes];
 
   static BoundsRow empty() {
     BoundsRow row;
-    for (int lane = 0; lane < 4; ++lane) row.clear(lane);
+    for (int place = 0; place < kBoxes; ++place) row.clear(place);
     return row;
   }
-  void set(int lane, const Bounds<D>& box) {
+  void set(int place, const Bounds<D>& box) {
     for (int i = 0; i < D; ++i) {
-      lower[i].raw[lane] = box.lower[i];
-      upper[i].raw[lane] = box.upper[i];
+      lower[i][place] = box.lower[i];
+      upper[i][place] = box.upper[i];
     }
   }
-  void clear(int lane) {
+  void clear(int place) {
     for (int i = 0; i < D; ++i) {
-      lower[i].raw[lane] = 3.4e38f;
-      upper[i].raw[lane] = -3.4e38f;
+      lower[i][place] = 3.4e38f;
+      upper[i][place] = -3.4e38f;
     }
   }
 
@@ -36,20 +37,14 @@ struct BoundsRow {
   Bounds<D> all() const {
     Bounds<D> box;
     for (int i = 0; i < D; ++i) {
-      const auto& low = lower[i].raw;
-      const auto& high = upper[i].raw;
-      box.lower[i] = min(min(low[0], low[1]), min(low[2], low[3]));
-      box.upper[i] = max(max(high[0], high[1]), max(high[2], high[3]));
+      box.lower[i] = lower[i][0];
+      box.upper[i] = upper[i][0];
+      for (int place = 1; place < kBoxes; ++place) {
+        box.lower[i] = min(box.lower[i], lower[i][place]);
+        box.upper[i] = max(box.upper[i], upper[i][place]);
+      }
     }
     return box;
-  }
-
-  /// Bit i tells of the box in place i.
-  [[gnu::always_inline]] std::uint32_t overlapping(const Bounds<D>& box) const {
-    typename Lanes<4>::Mask apart{};
-    for (int i = 0; i < D; ++i)
-      apart = apart | (lower[i] > Lanes<4>(box.upper[i])) | (Lanes<4>(box.lower[i]) > upper[i]);
-    return bits_of<4>(~apart);
   }
 };
 

@@ -1,15 +1,25 @@
 #include "solver/collision/bounds_tree.hpp"
 
 #include <algorithm>
+#include <array>
 
 namespace cycloid::solver {
+
+/// Of each byte its bits with D - 1 zeros behind each.
+template <int D>
+static constexpr std::array<std::uint32_t, 256> spread_bytes() {
+  std::array<std::uint32_t, 256> spread{};
+  for (std::uint32_t byte = 0; byte < spread.size(); ++byte)
+    for (int i = 0; i < 8; ++i) spread[byte] |= ((byte >> i) & 1u) << (i * D);
+  return spread;
+}
 
 /// Spreads the low bits of x so that D - 1 zeros follow each.
 template <int D>
 static std::uint32_t spread_bits(std::uint32_t x) {
-  std::uint32_t spread = 0;
-  for (int i = 0; i < Dim<D>::kMortonBits; ++i) spread |= ((x >> i) & 1u) << (i * D);
-  return spread;
+  static_assert(Dim<D>::kMortonBits <= 16);
+  static constexpr std::array<std::uint32_t, 256> kSpread = spread_bytes<D>();
+  return kSpread[x & 255u] | kSpread[(x >> 8) & 255u] << (8 * D);
 }
 
 template <int D>
@@ -44,9 +54,9 @@ void BoundsTree<D>::build(std::vector<Leaf>& leaves) {
 
 template <int D>
 void BoundsTree<D>::put(int level, int child, const Bounds<D>& box) {
-  const auto row = static_cast<std::size_t>(first_row_[level] + child / 4);
+  const auto row = static_cast<std::size_t>(first_row_[level] + child / BoundsRow<D>::kBoxes);
   if (row == rows_.size()) rows_.push_back(BoundsRow<D>::empty());
-  rows_[row].set(child % 4, box);
+  rows_[row].set(child % BoundsRow<D>::kBoxes, box);
 }
 
 template <int D>
@@ -62,6 +72,13 @@ void BoundsTree<D>::build_rows() {
     for (int row = begin; row < end; ++row)
       put(levels_, row - begin, rows_[static_cast<std::size_t>(row)].all());
   }
+}
+
+template <int D>
+bool BoundsTree<D>::search_on(BoundsSearch<D>& search, FoundBoxes& found) const {
+  const RowsOfTree<D> tree{rows_.data(), first_row_, levels_};
+  return with_widest_bounds(
+      [&]<int W>() { return BoundsKernels<D, W>::search_tree(tree, search, found); });
 }
 
 template class BoundsTree<2>;

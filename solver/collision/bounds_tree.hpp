@@ -1,19 +1,18 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 
-#include "solver/collision/bounds_row.hpp"
+#include "solver/collision/bounds_kernels.hpp"
 
 namespace cycloid::solver {
 
-/// A balanced tree of boxes, four to a node, over a sorted sequence, built from nothing:
+/// A balanced tree of boxes, sixteen to a node, over a sorted sequence, built from nothing:
 /// O(n log n), without a history.
 ///
 /// Leaves are sorted along a Morton curve, which keeps neighbours together. Source: Karras,
 /// "Maximizing Parallelism in the Construction of BVHs, Octrees, and k-d Trees" (HPG 2012); we
-/// take them four at a time instead of splitting at the highest differing bit, so the depth is
+/// take them sixteen at a time instead of splitting at the highest differing bit, so the depth is
 /// bounded.
 template <int D>
 class BoundsTree {
@@ -33,45 +32,20 @@ class BoundsTree {
   template <class Found>
   void query(const Bounds<D>& bounds, Found&& found) const {
     if (leaves_.empty()) return;
-    Visit path[kLevelsMax];
-    int level = levels_ - 1;
-    path[level] = visit(level, 0, bounds);
-    while (level < levels_) {
-      Visit& at = path[level];
-      if (at.overlapping == 0) {
-        ++level;
-        continue;
-      }
-      const int child = 4 * at.row + std::countr_zero(at.overlapping);
-      at.overlapping &= at.overlapping - 1;
-      if (level == 0) {
-        found(child);
-        continue;
-      }
-      --level;
-      path[level] = visit(level, child, bounds);
-    }
+    for_each_found(
+        bounds,
+        [&](BoundsSearch<D>& search, FoundBoxes& boxes) { return search_on(search, boxes); },
+        [&](std::uint32_t rank) { found(static_cast<int>(rank)); });
   }
 
  private:
-  /// A fourth of what an int counts, a fourth of that, and so on.
-  static constexpr int kLevelsMax = 16;
-
-  /// A row on the way to the leaves, and which of its boxes are still to be gone into.
-  struct Visit {
-    int row;
-    std::uint32_t overlapping;
-  };
-  Visit visit(int level, int row, const Bounds<D>& bounds) const {
-    return {row, rows_[static_cast<std::size_t>(first_row_[level] + row)].overlapping(bounds)};
-  }
+  bool search_on(BoundsSearch<D>& search, FoundBoxes& found) const;
   void put(int level, int child, const Bounds<D>& box);
   void build_rows();
 
   std::vector<Leaf> leaves_;
-  /// Level by level: box i of row r is of leaf 4 r + i, and one level up of row 4 r + i.
-  std::vector<BoundsRow<D>> rows_;
-  int first_row_[kLevelsMax] = {};  ///< Of each level, from the leaves to the one of a single row.
+  std::vector<BoundsRow<D>> rows_;                 ///< As in RowsOfTree.
+  int first_row_[RowsOfTree<D>::kLevelsMax] = {};  ///< Of each level.
   int levels_ = 0;
   struct Key {
     std::uint64_t code;  ///< Morton code, then id: unique, so the order is total.

@@ -2,6 +2,7 @@
 
 namespace cycloid::solver {
 
+static constexpr std::uint32_t kBoxesOfRow = BoundsRow<2>::kBoxes;
 /// Beyond so many boxes a small tree is faster than rows.
 static constexpr std::uint32_t kRowsMax = 256;
 /// Beyond so many that changed since it was made, and a share of all, the great tree is made anew.
@@ -13,7 +14,7 @@ void BoxSet<D>::clear() {
   boxes_.clear();
   home_.clear();
   rows_.clear();
-  loose_ = 0;
+  ids_.clear();
   count_ = 0;
   leaves_.clear();
   old_.build(leaves_);
@@ -22,10 +23,8 @@ void BoxSet<D>::clear() {
 
 template <int D>
 void BoxSet<D>::write(std::uint32_t place, std::uint32_t id, const Bounds<D>& box) {
-  Row& row = rows_[place / 4];
-  const int lane = static_cast<int>(place % 4);
-  row.boxes.set(lane, box);
-  row.id[lane] = id;
+  rows_[place / kBoxesOfRow].set(static_cast<int>(place % kBoxesOfRow), box);
+  ids_[place] = id;
   home_[id] = place;
 }
 
@@ -38,21 +37,23 @@ void BoxSet<D>::put(std::uint32_t id, const Bounds<D>& box) {
   boxes_[id] = box;
   if (home_[id] == kAbsent) ++count_;
   if (home_[id] < kInYoung) return write(home_[id], id, box);
-  if (loose_ % 4 == 0) rows_.push_back({BoundsRow<D>::empty(), {}});
-  write(loose_++, id, box);
+  const auto place = static_cast<std::uint32_t>(ids_.size());
+  if (place % kBoxesOfRow == 0) rows_.push_back(BoundsRow<D>::empty());
+  ids_.push_back(id);
+  write(place, id, box);
 }
 
 /// The last of the rows moves into the place.
 template <int D>
 void BoxSet<D>::take_out(std::uint32_t place) {
-  --loose_;
-  const std::uint32_t last = rows_[loose_ / 4].id[loose_ % 4];
-  if (place != loose_) write(place, last, boxes_[last]);
-  if (loose_ % 4 == 0) {
+  const std::uint32_t last = ids_.back();
+  ids_.pop_back();
+  const auto emptied = static_cast<std::uint32_t>(ids_.size());
+  if (place != emptied) write(place, last, boxes_[last]);
+  if (emptied % kBoxesOfRow == 0)
     rows_.pop_back();
-    return;
-  }
-  rows_.back().boxes.clear(static_cast<int>(loose_ % 4));
+  else
+    rows_.back().clear(static_cast<int>(emptied % kBoxesOfRow));
 }
 
 template <int D>
@@ -72,10 +73,7 @@ void BoxSet<D>::list_young() {
     const std::uint32_t id = young_.leaf(rank).id;
     if (home_[id] == kInYoung) leaves_.push_back({boxes_[id], id});
   }
-  for (std::uint32_t place = 0; place < loose_; ++place) {
-    const std::uint32_t id = rows_[place / 4].id[place % 4];
-    leaves_.push_back({boxes_[id], id});
-  }
+  for (const std::uint32_t id : ids_) leaves_.push_back({boxes_[id], id});
 }
 
 /// The boxes of leaves_ have a new home, and no other is in rows.
@@ -83,12 +81,12 @@ template <int D>
 void BoxSet<D>::forget_rows(Home home) {
   for (const auto& leaf : leaves_) home_[leaf.id] = home;
   rows_.clear();
-  loose_ = 0;
+  ids_.clear();
 }
 
 template <int D>
 void BoxSet<D>::settle() {
-  if (loose_ <= kRowsMax) return;
+  if (ids_.size() <= kRowsMax) return;
   list_young();
   const std::uint32_t share = count_ / kChangedShare;
   if (leaves_.size() <= (share > kChangedMax ? share : kChangedMax)) {
@@ -103,6 +101,14 @@ void BoxSet<D>::settle() {
   old_.build(leaves_);
   leaves_.clear();
   young_.build(leaves_);
+}
+
+template <int D>
+bool BoxSet<D>::search_rows(BoundsSearch<D>& search, FoundBoxes& found) const {
+  const auto count = static_cast<int>(rows_.size());
+  return with_widest_bounds([&]<int W>() {
+    return BoundsKernels<D, W>::search_rows(rows_.data(), count, search, found);
+  });
 }
 
 template class BoxSet<2>;

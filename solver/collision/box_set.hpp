@@ -1,6 +1,5 @@
 #pragma once
 
-#include <bit>
 #include <cstdint>
 #include <vector>
 
@@ -9,7 +8,7 @@
 namespace cycloid::solver {
 
 /// Boxes by number, to be asked which of them overlap another: those that changed last lie in rows
-/// of four that a query compares at once, those that changed lately in a small tree, the others in
+/// that a query compares at once, those that changed lately in a small tree, the others in
 /// a great one. Each tree is made anew when too many have changed since. A small world has rows
 /// alone. What is found depends on the boxes alone, in which order also on the history: whoever
 /// asks must not let the order show.
@@ -38,16 +37,15 @@ class BoxSet {
         if (home_[id] == home) found(id);
       });
     }
-    for (const Row& row : rows_)
-      for (std::uint32_t lanes = row.boxes.overlapping(bounds); lanes != 0; lanes &= lanes - 1)
-        found(row.id[std::countr_zero(lanes)]);
+    if (rows_.empty()) return;
+    for_each_found(
+        bounds,
+        [&](BoundsSearch<D>& search, FoundBoxes& boxes) { return search_rows(search, boxes); },
+        [&](std::uint32_t place) { found(ids_[place]); });
   }
 
  private:
-  struct Row {
-    BoundsRow<D> boxes;
-    std::uint32_t id[4];
-  };
+  bool search_rows(BoundsSearch<D>& search, FoundBoxes& found) const;
   /// Where a box is, if not at a place among the rows. A tree also holds boxes that have left it.
   enum Home : std::uint32_t { kInYoung = 0xfffffffdu, kInOld, kAbsent };
   void write(std::uint32_t place, std::uint32_t id, const Bounds<D>& box);
@@ -57,8 +55,8 @@ class BoxSet {
 
   std::vector<Bounds<D>> boxes_;     ///< By id.
   std::vector<std::uint32_t> home_;  ///< By id: a Home, or the place among the rows.
-  std::vector<Row> rows_;
-  std::uint32_t loose_ = 0;  ///< Boxes in rows.
+  std::vector<BoundsRow<D>> rows_;
+  std::vector<std::uint32_t> ids_;  ///< By place among the rows: whose box is there.
   std::uint32_t count_ = 0;
   BoundsTree<D> old_;
   BoundsTree<D> young_;

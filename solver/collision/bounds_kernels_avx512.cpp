@@ -1,0 +1,11 @@
+// Compiled with -mavx512f where CYCLOID_AVX512 is defined; called only where has_avx512_kernels()
+// says so. Every name that this file defines holds the width 528: see
+// constraints/contact_kernels_avx2.cpp.
+#include "solver/collision/bounds_lanes.hpp"
+
+namespace cycloid::solver {
+
+template struct BoundsKernels<2, kAvx512Lanes>;
+template struct BoundsKernels<3, kAvx512Lanes>;
+
+}  // namespace cycloid::solver
