@@ -216,28 +216,26 @@ static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScra
   return look_up(state, workers, tally, scratch);
 }
 
+static bool is_below(const ShapePair& one, const ShapePair& other) {
+  return one.key() < other.key();
+}
+
 /// Old candidates and new ones in one order, without the old ones of shapes that looked anew.
 template <int D>
 static void merge_candidates(StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.pair_cache;
-  std::vector<ShapePair>& merged = scratch.pairs;
-  merged.clear();
-  auto fresh = scratch.fresh_candidates.begin();
-  for (const ShapePair& pair : cache.candidates) {
-    if ((cache.looks[pair.shape_a] | cache.looks[pair.shape_b]) != 0) continue;
-    for (; fresh != scratch.fresh_candidates.end() && fresh->key() < pair.key(); ++fresh)
-      merged.push_back(*fresh);
-    merged.push_back(pair);
-  }
-  merged.insert(merged.end(), fresh, scratch.fresh_candidates.end());
-  // Not swapped: steps work in shared memory, which would then change its size with each world.
-  cache.candidates.assign(merged.begin(), merged.end());
+  const std::vector<ShapePair>& fresh = scratch.fresh_candidates;
+  std::vector<ShapePair>& kept = scratch.pairs;
+  kept.clear();
+  append_if(cache.candidates, {0, static_cast<int>(cache.candidates.size())}, kept,
+            [&](const ShapePair& pair) {
+              return (cache.looks[pair.shape_a] | cache.looks[pair.shape_b]) == 0;
+            });
+  cache.candidates.resize(kept.size() + fresh.size());
+  std::merge(kept.begin(), kept.end(), fresh.begin(), fresh.end(), cache.candidates.begin(),
+             is_below);
   for (const std::uint32_t shape : scratch.looking) cache.looks[shape] = 0;
   scratch.looking.clear();
-}
-
-static bool is_below(const ShapePair& one, const ShapePair& other) {
-  return one.key() < other.key();
 }
 
 /// All candidates become one list again, where dormant ones may be so no longer.
