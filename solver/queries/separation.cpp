@@ -43,10 +43,11 @@ struct CoreAxis {
   std::uint32_t vertex = 0;  ///< Of the other core, lowest along the normal.
 };
 
+/// @param faces  of `a`: how many of its edges have a normal that counts.
 template <int D>
-static CoreAxis<D> best_axis(const Core<D>& a, const Core<D>& b) {
+static CoreAxis<D> best_axis(const Core<D>& a, const Core<D>& b, std::uint32_t faces) {
   CoreAxis<D> best;
-  for (std::uint32_t i = 0; i < a.faces(); ++i) {
+  for (std::uint32_t i = 0; i < faces; ++i) {
     std::uint32_t lowest = 0;
     float height = dot(a.normals[i], b.vertices[0] - a.vertices[i]);
     for (std::uint32_t j = 1; j < b.count; ++j) {
@@ -116,15 +117,15 @@ static bool cores_cross(const Core<2>& a, const Core<2>& b, float separation) {
 
 /// The largest separation over all edge normals of both, without the rule for one-sided shapes.
 template <int D>
-static float axis_separation(Core<D> a, Core<D> b) {
-  a.kind = b.kind = ShapeKind::kPolygon;
-  return max(best_axis(a, b).separation, best_axis(b, a).separation);
+static float axis_separation(const Core<D>& a, const Core<D>& b) {
+  const auto all_faces = [](const Core<D>& core) { return core.count < 2 ? 0u : core.count; };
+  return max(best_axis(a, b, all_faces(a)).separation, best_axis(b, a, all_faces(b)).separation);
 }
 
 template <int D>
 static Separation<D> across(const Core<D>& a, const Core<D>& b) {
-  CoreAxis<D> axis_a = best_axis(a, b);
-  CoreAxis<D> axis_b = best_axis(b, a);
+  CoreAxis<D> axis_a = best_axis(a, b, a.faces());
+  CoreAxis<D> axis_b = best_axis(b, a, b.faces());
   if (a.one_sided()) axis_b.found = false;
   if (b.one_sided() && !a.one_sided()) axis_a.found = false;
   const bool flipped = axis_b.found && (!axis_a.found || axis_b.separation > axis_a.separation);

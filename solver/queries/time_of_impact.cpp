@@ -8,6 +8,7 @@ namespace cycloid::solver {
 
 template <int D>
 Pose<D> pose_at(const BodySweep<D>& sweep, float fraction) {
+  if (fraction == 0.0f) return sweep.start;
   return {sweep.start.position + fraction * sweep.translation,
           compose(rotation_by(fraction * sweep.turn), sweep.start.rotation)};
 }
@@ -20,7 +21,8 @@ struct Mover {
   Vec<D> translation;
   Spin<D> turn;
   float turn_rate;
-  float reach;  ///< Of the farthest vertex from the centre, m.
+  std::array<float, Dim<D>::kVertices> arms;  ///< Of vertices from the centre, m.
+  float reach;                                ///< The longest of them.
 
   Vec<D> velocity_at(const Vec<D>& point) const {
     return translation + spin_cross(turn, point - centre);
@@ -38,9 +40,12 @@ static Mover<D> mover_at(const Shape<D>& shape, const BodySweep<D>& sweep, const
                  sweep.translation,
                  sweep.turn,
                  length(sweep.turn),
+                 {},
                  0.0f};
-  for (std::uint32_t i = 0; i < mover.core.count; ++i)
-    mover.reach = max(mover.reach, length(mover.core.vertices[i] - centre));
+  for (std::uint32_t i = 0; i < mover.core.count; ++i) {
+    mover.arms[i] = length(mover.core.vertices[i] - centre);
+    mover.reach = max(mover.reach, mover.arms[i]);
+  }
   return mover;
 }
 
@@ -58,7 +63,7 @@ static Support support_of(const Mover<D>& mover, std::uint32_t i, const Vec<D>& 
     return {mover.core.offset * dot(axis, mover.core.normal), dot(axis, mover.translation), 0.0f,
             0.0f};
   const Vec<D> vertex = mover.core.vertices[i];
-  const float arm = length(vertex - mover.centre);
+  const float arm = mover.arms[i];
   return {dot(axis, vertex), dot(axis, mover.velocity_at(vertex)),
           mover.turn_rate * mover.turn_rate * arm, mover.turn_rate * arm};
 }
