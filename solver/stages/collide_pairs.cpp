@@ -164,11 +164,11 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
 /// The contact points of every pair, with last tick's impulses where the same features met, and
 /// which contacts began and ended.
 ///
-/// Reads pairs, shapes, poses, velocities, who is active and the old contacts; writes which of
-/// those rest, the contacts of all others, which of them are live with their manifolds, began and
-/// ended. Contacts are listed in the order of the pairs, which is that of the shapes' slots, beside
-/// the old ones in the same order. One thread lists them at once; of several each takes chunks of
-/// the pairs, whose lists are joined.
+/// Reads pairs, shapes, materials, poses, velocities, who is active and the old contacts; writes
+/// which of those rest, the contacts of all others, which of them are live with their manifolds,
+/// began and ended. Contacts are listed in the order of the pairs, which is that of the shapes'
+/// slots, beside the old ones in the same order. One thread lists them at once; of several each
+/// takes chunks of the pairs, whose lists are joined.
 template <int D>
 void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch) {
