@@ -24,9 +24,9 @@ template <int D, int W>
 }
 
 /// Lists the boxes of a row of leaves.
-template <int W>
+template <int D, int W>
 [[gnu::always_inline]] inline void list_found(int row, std::uint32_t bits, FoundBoxes& found) {
-  const auto first = static_cast<std::uint32_t>(16 * row);
+  const auto first = static_cast<std::uint32_t>(BoundsRow<D>::kBoxes * row);
   for (; bits != 0; bits &= bits - 1)
     found.numbers[found.count++] = first + static_cast<std::uint32_t>(__builtin_ctz(bits));
 }
@@ -51,14 +51,14 @@ bool BoundsKernels<D, W>::search_tree(const RowsOfTree<D>& tree, BoundsSearch<D>
     std::uint32_t& bits = search.overlapping[level];
     if (level == 0) {
       if (found.count > FoundBoxes::kMax - BoundsRow<D>::kBoxes) return true;
-      list_found<W>(row, bits, found);
+      list_found<D, W>(row, bits, found);
       bits = 0;
     }
     if (bits == 0) {
       ++search.level;
       continue;
     }
-    const int child = 16 * row + __builtin_ctz(bits);
+    const int child = BoundsRow<D>::kBoxes * row + __builtin_ctz(bits);
     bits &= bits - 1;
     go_into<D, W>(tree, level - 1, child, search);
   }
@@ -70,7 +70,7 @@ bool BoundsKernels<D, W>::search_rows(const BoundsRow<D>* rows, int count, Bound
                                       FoundBoxes& found) {
   for (; search.level < count; ++search.level) {
     if (found.count > FoundBoxes::kMax - BoundsRow<D>::kBoxes) return true;
-    list_found<W>(search.level, overlapping<D, W>(rows[search.level], search.box), found);
+    list_found<D, W>(search.level, overlapping<D, W>(rows[search.level], search.box), found);
   }
   return false;
 }
