@@ -68,7 +68,7 @@ struct alignas(4 * kLaneCount<W>) Lanes {
 
   Lanes() = default;
   explicit Lanes(Raw r) : raw(r) {}
-  Lanes(float x) : raw(Raw{} + x) {}  // NOLINT: a scalar constant is the same in every lane.
+  Lanes(float x) : raw(x - Raw{}) {}  // NOLINT: a scalar constant is the same in every lane.
 
   static Lanes load(const float* from) {
     Lanes lanes;

@@ -102,10 +102,44 @@ template <class Record>
   store_floats(from, 4 * quad, record);
 }
 
+/// Four floats each, side by side. GCC 12 joins vectors of floats by two copies and a shuffle, and
+/// whole numbers straight from memory.
+#if defined(__SIZEOF_INT128__) && !defined(__clang__)
+__extension__ typedef __int128 WholeQuad;
+typedef WholeQuad WholePair __attribute__((vector_size(32)));
+typedef WholeQuad WholeFour __attribute__((vector_size(64)));
+[[gnu::always_inline]] inline QuadPair join(const WholeQuad& a, const WholeQuad& b) {
+  const WholePair numbers = {a, b};
+  QuadPair joined;
+  std::memcpy(&joined, &numbers, sizeof joined);
+  return joined;
+}
+[[gnu::always_inline]] inline QuadFour join(const WholeQuad& a, const WholeQuad& b,
+                                            const WholeQuad& c, const WholeQuad& d) {
+  const WholeFour numbers = {a, b, c, d};
+  QuadFour joined;
+  std::memcpy(&joined, &numbers, sizeof joined);
+  return joined;
+}
+#else
+using WholeQuad = Quad;
+[[gnu::always_inline]] inline QuadPair join(const Quad& a, const Quad& b) {
+  return __builtin_shufflevector(a, b, 0, 1, 2, 3, 4, 5, 6, 7);
+}
+[[gnu::always_inline]] inline QuadFour join(const Quad& a, const Quad& b, const Quad& c,
+                                            const Quad& d) {
+  return __builtin_shufflevector(join(a, b), join(c, d), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 12,
+                                 13, 14, 15);
+}
+#endif
+
 /// Floats [first, first + 4) of the records that the lanes name.
 template <int W, class Record>
 [[gnu::always_inline]] inline void gather_floats(const Record* records, const LaneIndices<W>& index,
                                                  int first, Lanes<W> (&columns)[4]) {
+  const auto quad_of = [&](int lane) __attribute__((always_inline)) {
+    return load_quad_as<WholeQuad>(records[index[lane]], first);
+  };
   if constexpr (W == 1) {
     struct Row {
       float value[4];
@@ -114,24 +148,13 @@ template <int W, class Record>
     for (int i = 0; i < 4; ++i) columns[i] = Lanes<W>::load(&row.value[i]);
   } else if constexpr (W == kAvx2Lanes) {
     QuadPair rows[4];
-    for (int r = 0; r < 4; ++r) {
-      const Quad low = load_floats(records[index[r]], first);
-      const Quad high = load_floats(records[index[r + 4]], first);
-      rows[r] = __builtin_shufflevector(low, high, 0, 1, 2, 3, 4, 5, 6, 7);
-    }
+    for (int r = 0; r < 4; ++r) rows[r] = join(quad_of(r), quad_of(r + 4));
     transpose(rows);
     for (int i = 0; i < 4; ++i) columns[i].raw = rows[i];
   } else if constexpr (W == kAvx512Lanes) {
     QuadFour rows[4];
-    for (int r = 0; r < 4; ++r) {
-      const auto pair = [&](int lane) {
-        return __builtin_shufflevector(load_floats(records[index[lane]], first),
-                                       load_floats(records[index[lane + 4]], first), 0, 1, 2, 3, 4,
-                                       5, 6, 7);
-      };
-      rows[r] = __builtin_shufflevector(pair(r), pair(r + 8), 0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11,
-                                        12, 13, 14, 15);
-    }
+    for (int r = 0; r < 4; ++r)
+      rows[r] = join(quad_of(r), quad_of(r + 4), quad_of(r + 8), quad_of(r + 12));
     transpose(rows);
     for (int i = 0; i < 4; ++i) columns[i].raw = rows[i];
   } else {

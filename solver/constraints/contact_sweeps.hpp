@@ -120,33 +120,74 @@ void ContactKernels<D, W>::warm_start(const BlockRange<D, W>& range) {
   }
 }
 
-/// Blocks of the plain rows: each point's normal, then each point's friction. Two at a time, row by
-/// row in turn: each row waits for the one before it in its own block, and blocks of one colour
-/// share no body that moves, so the rows of one fill the time that those of the other wait.
-template <Sweep kSweep, int D, int W, int kBlocks>
+/// What a sweep has of a block at hand: the motions of its bodies.
+template <int D, int W>
+struct SweptMotions {
+  MotionLanes<D, W> a;
+  MotionLanes<D, W> b;
+  SoftnessLanes<W> soft;
+};
+
+/// Blocks of the plain rows: each point's normal, then each point's friction. Row by row in turn:
+/// each row waits for the one before it in its own block, and blocks of one colour share no body
+/// that moves, so the rows of one fill the time that those of the other wait.
+/// @param each  Calls what it is given for each of the blocks and its motions.
+template <Sweep kSweep, int D, int W, class Each>
 [[gnu::always_inline]] inline void sweep_plain(const StepContext<D>& context,
-                                               const BlockRange<D, W>& range,
-                                               ContactBlock<D, W>* blocks) {
-  MotionLanes<D, W> a[kBlocks];
-  MotionLanes<D, W> b[kBlocks];
-  SoftnessLanes<W> soft[kBlocks];
+                                               const BlockRange<D, W>& range, const Each& each) {
+  using Block = ContactBlock<D, W>;
+  using Motions = SweptMotions<D, W>;
   std::uint32_t points = 0;
-  for (int k = 0; k < kBlocks; ++k) {
-    gather_pair(range, blocks[k], a[k], b[k]);
-    if (kSweep == Sweep::kBiased) soft[k] = softness_of(context, blocks[k]);
-    points = points < blocks[k].point_count ? blocks[k].point_count : points;
-  }
+  each([&](Block & block, Motions & m) __attribute__((always_inline)) {
+    gather_pair(range, block, m.a, m.b);
+    if (kSweep == Sweep::kBiased) m.soft = softness_of(context, block);
+    points = points < block.point_count ? block.point_count : points;
+  });
   for (std::uint32_t i = 0; i < points; ++i) {
     const std::uint32_t p = point_in_turn(context, kSweep, i, points);
-    for (int k = 0; k < kBlocks; ++k)
-      if (p < blocks[k].point_count)
-        solve_normal(context, kSweep, blocks[k], soft[k], blocks[k].points[p], a[k], b[k]);
+    each([&](Block & block, Motions & m) __attribute__((always_inline)) {
+      if (p < block.point_count)
+        solve_normal(context, kSweep, block, m.soft, block.points[p], m.a, m.b);
+    });
   }
   for (std::uint32_t i = 0; i < points; ++i)
-    for (int k = 0; k < kBlocks; ++k)
-      if (blocks[k].rubs && i < blocks[k].point_count)
-        solve_friction(context, blocks[k], i, a[k], b[k]);
-  for (int k = 0; k < kBlocks; ++k) scatter_pair(range, blocks[k], a[k], b[k]);
+    each([&](Block & block, Motions & m) __attribute__((always_inline)) {
+      if (block.rubs && i < block.point_count) solve_friction(context, block, i, m.a, m.b);
+    });
+  each([&](Block & block, Motions & m)
+           __attribute__((always_inline)) { scatter_pair(range, block, m.a, m.b); });
+}
+
+template <Sweep kSweep, int D, int W>
+[[gnu::always_inline]] inline void sweep_one(const StepContext<D>& context,
+                                             const BlockRange<D, W>& range,
+                                             ContactBlock<D, W>& block) {
+  SweptMotions<D, W> motions;
+  sweep_plain<kSweep>(
+      context, range, [&](const auto& act) __attribute__((always_inline)) { act(block, motions); });
+}
+
+/// What stands in an array passes through memory in every row; but in space the rows of two blocks
+/// have more numbers than there are registers, and more text than the caches of a core like.
+template <Sweep kSweep, int D, int W>
+[[gnu::always_inline]] inline void sweep_two(const StepContext<D>& context,
+                                             const BlockRange<D, W>& range,
+                                             ContactBlock<D, W>* blocks) {
+  if constexpr (kVelocityQuads<D> == 1) {
+    SweptMotions<D, W> first;
+    SweptMotions<D, W> second;
+    sweep_plain<kSweep>(
+        context, range, [&](const auto& act) __attribute__((always_inline)) {
+          act(blocks[0], first);
+          act(blocks[1], second);
+        });
+  } else {
+    SweptMotions<D, W> both[2];
+    sweep_plain<kSweep>(
+        context, range, [&](const auto& act) __attribute__((always_inline)) {
+          for (int k = 0; k < 2; ++k) act(blocks[k], both[k]);
+        });
+  }
 }
 
 /// Every other block. Apart, because its calls would keep the motions of all blocks in memory.
@@ -196,10 +237,10 @@ void sweep_blocks(const StepContext<D>& context, const BlockRange<D, W>& range) 
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
     if (is_plain(block)) {
       if (is_plain(block + 1)) {
-        sweep_plain<kSweep, D, W, 2>(context, range, block);
+        sweep_two<kSweep>(context, range, block);
         ++block;
       } else {
-        sweep_plain<kSweep, D, W, 1>(context, range, block);
+        sweep_one<kSweep>(context, range, *block);
       }
     } else if (kSweep != Sweep::kBiased || block->settled == 0) {
       sweep_any(context, kSweep, range, *block);
