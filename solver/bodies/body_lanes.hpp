@@ -11,18 +11,18 @@ namespace cycloid::solver {
 /// The text of BodyKernels, for the files that compile it and no others. Every function is a
 /// template on W, so that those compiled for one instruction set have names of their own.
 
-/// The places from `begin` on, one in each lane. @returns which lanes are used: where `count` ends
-/// before them the others stand for the last place again.
+/// The first `left` slots of a list, one in each lane, as many as there are. @returns which lanes
+/// are used: where that are not all, the others stand for the last slot again.
 template <int W>
-[[gnu::always_inline]] inline LaneBits places_in_lanes(int begin, int count,
-                                                       LaneIndices<W>& places) {
-  LaneBits used = 0;
-  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
-    const bool is_used = begin + lane < count;
-    places[lane] = static_cast<std::uint32_t>(is_used ? begin + lane : count - 1);
-    if (is_used) used |= LaneBits{1} << lane;
+[[gnu::always_inline]] inline LaneBits take_slots(const std::uint32_t* list, int left,
+                                                  LaneIndices<W>& slots) {
+  if (left >= kLaneCount<W>) {
+    std::memcpy(slots, list, sizeof slots);
+    return kAllLanes<W>;
   }
-  return used;
+  for (int lane = 0; lane < kLaneCount<W>; ++lane)
+    slots[lane] = list[lane < left ? lane : left - 1];
+  return (LaneBits{1} << left) - 1;
 }
 
 template <int W>
@@ -48,10 +48,8 @@ template <int W>
 template <int W>
 void BodyKernels<W>::move(float h, const std::uint32_t* slots, int count, Motion<2>* motions) {
   for (int begin = 0; begin < count; begin += kLaneCount<W>) {
-    LaneIndices<W> places;
-    const LaneBits used = places_in_lanes<W>(begin, count, places);
     LaneIndices<W> bodies;
-    for (int lane = 0; lane < kLaneCount<W>; ++lane) bodies[lane] = slots[places[lane]];
+    const LaneBits used = take_slots<W>(slots + begin, count - begin, bodies);
     MotionLanes<2, W> motion = gather<2, W>(motions, bodies);
     move_lanes<W>(Lanes<W>(h), motion);
     scatter_quads<0, kPoseQuads<2>>(motion, used, bodies, motions);
@@ -100,14 +98,15 @@ void BodyKernels<W>::find_boxes(const FlyingShape* flying, const std::uint32_t* 
   using L = Lanes<W>;
   static_assert(sizeof(Bounds<2>) == sizeof(Quad) && sizeof(FlyingShape) == 2 * sizeof(Quad));
   for (int begin = 0; begin < count; begin += kLaneCount<W>) {
-    LaneIndices<W> places;
-    const LaneBits used = places_in_lanes<W>(begin, count, places);
     LaneIndices<W> shape;
-    for (int lane = 0; lane < kLaneCount<W>; ++lane) shape[lane] = shapes[places[lane]];
+    const LaneBits used = take_slots<W>(shapes + begin, count - begin, shape);
+    LaneIndices<W> place;
+    for (int lane = 0; lane < kLaneCount<W>; ++lane)
+      place[lane] = static_cast<std::uint32_t>(begin + lane < count ? lane : count - begin - 1);
     L pose[4];
     L more[4];
-    gather_columns<W>(flying, places, 0, pose);
-    gather_columns<W>(flying, places, 1, more);
+    gather_columns<W>(flying + begin, place, 0, pose);
+    gather_columns<W>(flying + begin, place, 1, more);
     const BoundsLanes<W> bounds =
         bounds_in_lanes<W>(of, shape, {{pose[2], pose[3]}}, {{pose[0], pose[1]}}, more[3]);
     L box[4];

@@ -28,8 +28,9 @@ L rebound_speed(const L& restitution, const L& u, const L& gap, const L& pull, c
 /// of twenty elastic discs loses its energy.
 /// @returns whether any did. @pre the block is placed where the bodies are.
 template <int D, int W>
-bool bounce_points(const StepContext<D>& context, ContactBlock<D, W>& block, MotionLanes<D, W>& a,
-                   MotionLanes<D, W>& b) {
+[[gnu::always_inline]] inline bool bounce_points(const StepContext<D>& context,
+                                                 ContactBlock<D, W>& block, MotionLanes<D, W>& a,
+                                                 MotionLanes<D, W>& b) {
   using L = Lanes<W>;
   ContactExtra<D, W>& extra = *block.extra;
   bool any = false;
