@@ -163,8 +163,8 @@ constexpr RecordWords<R> float_words() {
   return words;
 }
 
-/// How many records a period of `kFloatWords` has: whole vectors of numbers, of 8 at the widest.
-inline constexpr std::size_t kRecordsPerPeriod = 8;
+/// How many records a period of `kFloatWords` has: whole vectors of numbers, of 16 at the widest.
+inline constexpr std::size_t kRecordsPerPeriod = 16;
 
 /// `float_words` of a period of records, one after the other.
 template <class R>

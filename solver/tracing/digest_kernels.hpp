@@ -11,7 +11,8 @@
 namespace cycloid::solver {
 
 /// What a digest spends its time with, in vectors of W numbers of 4 bytes. Integers throughout, so
-/// every width gives the same bits. Compiled for each: digest_kernels.cpp, digest_kernels_avx2.cpp.
+/// every width gives the same bits. Compiled for each: digest_kernels.cpp, digest_kernels_avx2.cpp,
+/// digest_kernels_avx512.cpp.
 template <int W>
 struct DigestKernels {
   /// XXH3's update.
@@ -20,7 +21,7 @@ struct DigestKernels {
   /// -0 or a NaN. Counted in whole periods of `floats`, of which the last may be cut short.
   ///
   /// @param floats  by number of a period all ones where it is a float, else zero.
-  /// @pre `size` is whole numbers, `period` whole vectors; both in bytes.
+  /// @pre `size` and `period` are whole numbers, in bytes. Fastest where a period is whole vectors.
   static std::size_t canonical_bytes(const std::byte* numbers, std::size_t size,
                                      const std::uint32_t* floats, std::size_t period);
 };

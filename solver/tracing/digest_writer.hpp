@@ -85,7 +85,7 @@ class DigestWriter {
     used_ = 0;
   }
 
-  static constexpr std::size_t kBufferBytes = 4096;
+  static constexpr std::size_t kBufferBytes = 8192;
   /// What is copied rather than begin an update of XXH3.
   static constexpr std::size_t kFewBytes = 512;
 

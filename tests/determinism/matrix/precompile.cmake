@@ -30,7 +30,8 @@ function(precompile_for_the_matrix)
     solver/constraints/contact_kernels_avx2.cpp solver/constraints/contact_kernels_avx512.cpp
     solver/constraints/pin_kernels.cpp solver/constraints/pin_kernels_avx2.cpp
     solver/constraints/pin_kernels_avx512.cpp
-    solver/tracing/digest_kernels_avx2.cpp solver/instruction_sets.cpp)
+    solver/tracing/digest_kernels_avx2.cpp solver/tracing/digest_kernels_avx512.cpp
+    solver/instruction_sets.cpp)
   compile_alone(cycloid_solver ${with_flags_of_their_own})
   list(TRANSFORM with_flags_of_their_own PREPEND ${CMAKE_SOURCE_DIR}/)
   set_source_files_properties(${with_flags_of_their_own} TARGET_DIRECTORY cycloid_solver
