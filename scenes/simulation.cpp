@@ -96,6 +96,10 @@ void Simulation::use_step_memory(const StepMemories& memories) {
   if (solver::World<3>* world = spatial()) world->use_step_memory(memories.spatial);
 }
 
+void Simulation::set_lot_contacts(std::uint32_t contacts) {
+  running_->visit([&](auto& built) { built.world.set_lot_contacts(contacts); });
+}
+
 solver::Error Simulation::set_lanes(int lanes) {
   return running_->visit([&](auto& built) { return built.world.set_lanes(lanes); });
 }

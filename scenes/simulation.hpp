@@ -71,6 +71,8 @@ class Simulation {
   void use_step_memory(const StepMemories& memories);
   /// 1, 4, 8 or 16 contacts an instruction, else kInvalid "lanes"; changes no bit.
   solver::Error set_lanes(int lanes);
+  /// Of how many contacts are solved together where islands allow it; changes no bit.
+  void set_lot_contacts(std::uint32_t contacts);
 
   /// Applies the controls of every seat, in seat order, then steps once.
   /// @pre inputs.size() == seats(); otherwise kInvalid "inputs" and nothing has changed.

@@ -14,8 +14,8 @@ namespace cycloid::solver {
 /// All that depends on where the bodies are now, and on the time.
 template <int D, int W>
 static void evaluate(const StepContext<D>& context, const WorldState<D>& state, float time_s,
-                     Workers& workers, StepScratch<D>& scratch) {
-  evaluate_contacts<D, W>(workers, scratch);
+                     Lot& lot, Workers& workers, StepScratch<D>& scratch) {
+  evaluate_contacts<D, W>(lot, workers, scratch);
   evaluate_joints(context, state, time_s, workers, scratch);
   factor_trees(context, scratch);
 }
@@ -24,48 +24,49 @@ static void evaluate(const StepContext<D>& context, const WorldState<D>& state, 
 /// about the errors that are left. @pre rows are those of the present poses; so they are after it.
 template <int D, int W>
 static void solve_substep(const StepContext<D>& context, const WorldState<D>& state, float time_s,
-                          const Tracer<D>& traced, Workers& workers, StepScratch<D>& scratch) {
+                          const Tracer<D>& traced, Lot& lot, Workers& workers,
+                          StepScratch<D>& scratch) {
   const Tuning& tuning = context.tuning;
-  integrate_velocities(context, workers, scratch);
+  integrate_velocities(context, lot, workers, scratch);
   traced(Phase::kVelocities);
-  bounce_contacts<D, W>(context, workers, scratch);
+  bounce_contacts<D, W>(context, lot, workers, scratch);
   traced(Phase::kBounce);
-  warm_start_constraints<D, W>(workers, scratch);
+  warm_start_constraints<D, W>(lot, workers, scratch);
   traced(Phase::kWarmStart);
-  solve_islands<D, W>(context, scratch);
+  solve_islands<D, W>(context, lot, scratch);
   for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep) {
-    solve_constraints<D, W>(context, Sweep::kBiased, workers, scratch);
+    solve_constraints<D, W>(context, Sweep::kBiased, lot, workers, scratch);
     traced(Phase::kSweep, sweep);
   }
   if (tuning.stabilisation == Stabilisation::kSplitImpulse) {
-    solve_pseudo_velocities<D, W>(context, workers, scratch);
+    solve_pseudo_velocities<D, W>(context, lot, workers, scratch);
     traced(Phase::kPseudo);
   }
   correct_islands(context, scratch);
-  integrate_positions(context, state, workers, scratch);
+  integrate_positions(context, state, lot, workers, scratch);
   traced(Phase::kPositions);
   if (tuning.stabilisation == Stabilisation::kNgs) {
     for (std::uint32_t sweep = 0; sweep < tuning.position_sweeps; ++sweep) {
-      correct_positions<D, W>(context, state, time_s, workers, scratch);
+      correct_positions<D, W>(context, state, time_s, lot, workers, scratch);
       traced(Phase::kCorrect, sweep);
     }
   }
-  evaluate<D, W>(context, state, time_s, workers, scratch);
+  evaluate<D, W>(context, state, time_s, lot, workers, scratch);
   traced(Phase::kEvaluate);
   for (std::uint32_t sweep = 0; sweep < tuning.relax_sweeps; ++sweep) {
-    solve_constraints<D, W>(context, Sweep::kRelax, workers, scratch);
+    solve_constraints<D, W>(context, Sweep::kRelax, lot, workers, scratch);
     traced(Phase::kRelax, sweep);
   }
 }
 
 template <int D, int W>
 static void solve_substeps(const StepContext<D>& context, const WorldState<D>& state,
-                           Tracer<D> traced, Workers& workers, StepScratch<D>& scratch) {
+                           Tracer<D> traced, Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   // Signed, because 32-bit x86 turns large unsigned numbers into floats by x87 additions.
   const auto tick = static_cast<std::int64_t>(state.header.tick);
   const float start_s = static_cast<float>(tick) * context.tick_s;
   if (context.tuning.stabilisation != Stabilisation::kXpbd) {
-    evaluate<D, W>(context, state, start_s, workers, scratch);
+    evaluate<D, W>(context, state, start_s, lot, workers, scratch);
     traced(Phase::kEvaluate);
   }
   StepContext<D> now = context;
@@ -75,12 +76,44 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
     const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
     traced.substep = substep;
     if (context.tuning.stabilisation == Stabilisation::kXpbd) {
-      project_positions<D, W>(now, state, time_s, workers, scratch);
+      project_positions<D, W>(now, state, time_s, lot, workers, scratch);
       traced(Phase::kProject);
     } else {
-      solve_substep<D, W>(now, state, time_s, traced, workers, scratch);
+      solve_substep<D, W>(now, state, time_s, traced, lot, workers, scratch);
     }
   }
+}
+
+/// All substeps, then impulses into the contacts. @param tick_h  s, of the substeps asked for.
+template <int D, int W>
+static void solve_lot(float tick_h, const StepContext<D>& context, const WorldState<D>& state,
+                      const Tracer<D>& traced, Lot& lot, Workers& workers,
+                      StepScratch<D>& scratch) {
+  solve_substeps<D, W>(context, state, traced, lot, workers, scratch);
+  store_pins(scratch);
+  if (context.h != tick_h) rescale_impulses<D, W>(tick_h / context.h, scratch);
+  store_impulses<D, W>(lot, workers, scratch);
+}
+
+/// Lot after lot, each by one thread, where the tick is divided; at once where it is not, where
+/// islands are solved at once, and where somebody looks on, to whom each phase is that of all.
+template <int D, int W>
+static void solve_lots(float tick_h, const StepContext<D>& context, const WorldState<D>& state,
+                       const Tracer<D>& traced, Workers& workers, StepScratch<D>& scratch) {
+  std::vector<Lot>& lots = scratch.lots.all;
+  if (lots.empty() || scratch.islands_solved.acts || scratch.trace != nullptr) {
+    const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+    Lot whole{{0, static_cast<int>(scratch.moving_bodies.size())},
+              {0, static_cast<int>(contacts.colors.size())},
+              contacts.overflow};
+    return solve_lot<D, W>(tick_h, context, state, traced, whole, workers, scratch);
+  }
+  workers.parallel_for(static_cast<int>(lots.size()), 1, [&](Range range) {
+    Workers alone(1);
+    for (int i = range.begin; i < range.end; ++i)
+      solve_lot<D, W>(tick_h, context, state, traced, lots[static_cast<std::size_t>(i)], alone,
+                      scratch);
+  });
 }
 
 /// From the blocks of contacts on, in lanes of width W.
@@ -94,10 +127,7 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   scratch.substeps = paced.tuning.substeps;
   prepare_pins(paced, state, scratch);
   traced(Phase::kPrepare);
-  solve_substeps<D, W>(paced, state, traced, workers, scratch);
-  store_pins(scratch);
-  if (paced.h != context.h) rescale_impulses<D, W>(context.h / paced.h, scratch);
-  store_impulses<D, W>(workers, scratch);
+  solve_lots<D, W>(context.h, paced, state, traced, workers, scratch);
   traced(Phase::kStore);
   stop_fast_bodies(context, state, workers, scratch);
   traced(Phase::kStop);
@@ -128,6 +158,7 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   wake_islands(context, state, scratch);
   traced(Phase::kIslands);
   color(state, scratch);
+  divide_into_lots(context, state, scratch);
   traced(Phase::kColors);
   prepare_bodies(context, state, workers, scratch);
   prepare_joints(context, state, scratch);
@@ -188,8 +219,11 @@ static Statistics statistics_of(const WorldState<D>& state, const StepScratch<D>
   statistics.bodies = static_cast<std::uint32_t>(state.bodies.size() - state.free_bodies.size());
   statistics.pairs = static_cast<std::uint32_t>(scratch.pairs.size());
   statistics.contacts = static_cast<std::uint32_t>(state.contacts.size());
-  statistics.colors = static_cast<std::uint32_t>(scratch.contact_coloring.colors.size());
+  for (int color = 0; color < kColorsMax; ++color)
+    if (scratch.colors.sizes[color] > 0) ++statistics.colors;
   count_rows(state, scratch, statistics);
+  if (!scratch.lots.all.empty())
+    statistics.lots = static_cast<std::uint32_t>(scratch.lots.all.size());
   statistics.asleep = scratch.bodies_asleep;
   return statistics;
 }
@@ -230,6 +264,7 @@ Error World<D>::step_in_one_lane() {
   single.kept_->user_rows = kept_->user_rows;
   single.ended_ = ended_;
   single.lanes_ = 1;
+  single.lot_contacts_ = lot_contacts_;
   const Error error = single.step();
   if (error.ok()) {
     restore(single.state_);
@@ -251,6 +286,7 @@ Error World<D>::step_in_lanes() {
   StepContext<D> context =
       make_step_context(state_.header.tick_s, state_.header.gravity, state_.header.tuning);
   context.lanes = lanes_;
+  context.lot_contacts = lot_contacts_;
   StepLoan<D> loan(*step_memory_, *kept_);
   StepScratch<D>& scratch = loan.scratch();
   const Tracer<D> traced{state_, scratch};

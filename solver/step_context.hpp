@@ -16,10 +16,11 @@ struct StepContext {
   Softness contact;         ///< Between two movable bodies.
   Softness contact_static;  ///< Against a body without mass: twice as stiff.
   Softness joint;
-  Softness pseudo;   ///< Of pseudo-velocity sweeps, which are rigid and biased.
-  Softness motor;    ///< Of position motors without a frequency of their own.
-  float slop;        ///< m of overlap that velocity sweeps leave alone.
-  int lanes = 0;     ///< Width that is asked for; 0: what suits. Changes no bit.
+  Softness pseudo;                 ///< Of pseudo-velocity sweeps, which are rigid and biased.
+  Softness motor;                  ///< Of position motors without a frequency of their own.
+  float slop;                      ///< m of overlap that velocity sweeps leave alone.
+  std::uint32_t lot_contacts = 0;  ///< Of a lot that is asked for; 0: what suits. Changes no bit.
+  int lanes = 0;                   ///< Width that is asked for; 0: what suits. Changes no bit.
   bool odd = false;  ///< Of the number of the tick and the substep in sum: see point_in_turn.
 };
 

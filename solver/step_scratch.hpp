@@ -10,6 +10,7 @@
 #include "solver/collision/bounds_tree.hpp"
 #include "solver/collision/manifold.hpp"
 #include "solver/collision/pair_cache.hpp"
+#include "solver/coloring.hpp"
 #include "solver/constraints/contact.hpp"
 #include "solver/constraints/joint_row.hpp"
 #include "solver/constraints/live_contact.hpp"
@@ -20,19 +21,10 @@
 #include "solver/particles/move_particles.hpp"
 #include "solver/queries/time_of_impact.hpp"
 #include "solver/state.hpp"
-#include "solver/workers.hpp"
 
 namespace cycloid::solver {
 
 struct StepTrace;
-
-/// Constraints by colour: no two of one colour share a body that moves. `order` lists colour after
-/// colour; the last range holds what fitted none, to be solved one after the other.
-struct Coloring {
-  std::vector<int> order;
-  std::vector<Range> colors;
-  Range overflow;
-};
 
 /// The contact blocks of one lane width. Those of a colour are independent of one another; the
 /// overflow has a block per contact (only lane 0 used), solved in order.
@@ -44,6 +36,16 @@ struct ContactBlocks {
   bool bounces = false;
   std::vector<Range> colors;
   Range overflow;
+  std::vector<Range> members;  ///< By block: its contacts, in the order of the colouring.
+
+  /// Which blocks the contacts of a lot lie in.
+  Range blocks_of(const Lot& lot) const {
+    if (lot.colors.begin == lot.colors.end) return lot.overflow;
+    const bool overflows = lot.overflow.begin != lot.overflow.end;
+    return {
+        colors[static_cast<std::size_t>(lot.colors.begin)].begin,
+        overflows ? lot.overflow.end : colors[static_cast<std::size_t>(lot.colors.end) - 1].end};
+  }
 
   /// The extra of a block, which it has from now on: all 0, and points that turn.
   ContactExtra<D, W>& extra_of(std::size_t block) {
@@ -146,6 +148,8 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::vector<std::uint8_t> island_flags;
   std::vector<std::uint8_t> awake;          ///< By body, and 0 for the resting one of unused lanes.
   std::vector<std::uint32_t> awake_bodies;  ///< Their slots, ascending: alone they move.
+  Lots lots;
+  std::vector<std::uint32_t> moving_bodies;  ///< Who is awake, lot after lot.
 
   std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
   std::vector<BodyMass<D>> masses;
@@ -153,7 +157,7 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   bool met_many = false;                     ///< ... not listed: they are a good part of all.
   std::vector<std::uint8_t> inertia_turned;  ///< By body: its mass is of this substep's rotation.
   std::vector<std::uint32_t> used_colors;    ///< Bit set by body slot.
-  std::vector<int> color_of;
+  Colors colors;                             ///< Of live joints; then of live contacts.
   std::vector<int> live_joints;
   Coloring joint_coloring;               ///< `order` holds joint slots.
   Coloring contact_coloring;             ///< `order` holds places of live contacts.
@@ -180,9 +184,8 @@ struct StepScratch : KeptByWorld<D>, ContactList<D> {
   std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>,
              ContactBlocks<D, kAvx2Lanes>, ContactBlocks<D, kAvx512Lanes>>
       contact_blocks;                          ///< Only that of the chosen width is filled.
-  std::vector<Acceleration<D>> accelerations;  ///< Of awake_bodies.
+  std::vector<Acceleration<D>> accelerations;  ///< Of moving_bodies.
   std::uint32_t substeps = 0;                  ///< Of this tick.
-  std::uint32_t poses = 0;  ///< Grows whenever positions have moved in this tick.
   bool slides_far = false;  ///< Some body moves by more than a metre in this tick.
 };
 

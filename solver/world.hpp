@@ -53,6 +53,8 @@ struct Statistics {
   std::uint32_t asleep = 0;                  ///< Bodies that were left alone.
   std::uint64_t rows = 0;  ///< Rows solved in the step, all sweeps together; with the products
                            ///< of blocks where islands are solved at once.
+  std::uint32_t lots = 1;  ///< Groups of islands that were solved apart. Depends on what a step is
+                           ///< asked for and has done before, and so on more than the state.
 };
 
 /// A body as a user sees it: the pose of its frame, not of its centre of mass.
@@ -100,6 +102,10 @@ class World {
   /// How many contacts one instruction solves: 1, 4, 8 or 16; 0, as at first, leaves the choice to
   /// each step, by the contacts that there are and what the processor has. Changes no bit.
   Error set_lanes(int lanes);
+  /// Of how many contacts are solved together, from the first substep of a step to the last, before
+  /// or beside others that they do not touch: 1 and more; 0, as at first, leaves the choice to each
+  /// step. Changes no bit.
+  void set_lot_contacts(std::uint32_t contacts) { lot_contacts_ = contacts; }
 
   /// Advances one tick: `tuning.substeps` substeps of tick_s / substeps; under kLoadedIsland half
   /// as many where islands are solved at once that have all that moves.
@@ -216,6 +222,7 @@ class World {
   std::vector<ContactEvent> ended_;  ///< By destroy_body since the last step; reported by the next.
   Statistics statistics_;
   int lanes_ = 0;
+  std::uint32_t lot_contacts_ = 0;
   std::unique_ptr<Workers> workers_;
   std::unique_ptr<KeptByWorld<D>> kept_;
   std::shared_ptr<StepMemory<D>> step_memory_;

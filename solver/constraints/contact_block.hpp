@@ -81,7 +81,7 @@ struct ContactBlock : FrictionDirections<D, Lanes<W>> {
   LaneBits taken;    ///< Of islands: lanes in one that is solved, for the whole tick,
   LaneBits left;     ///< and lanes in none.
   LaneBits settled;  ///< Of islands: lanes that biased sweeps pass by.
-  std::uint32_t placed;       ///< Which poses gaps and slides are of (StepScratch::poses); 0: none.
+  std::uint32_t placed;       ///< Which poses gaps and slides are of (Lot::poses); 0: none.
   std::uint32_t point_count;  ///< The most points of any lane.
   bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.
   bool rubs;                  ///< Some lane has friction; else there are no tangent rows.

@@ -12,7 +12,7 @@ struct BlockRange {
   ContactBlock<D, W>* begin;
   ContactBlock<D, W>* end;
   Motion<D>* motions;   ///< By body slot.
-  std::uint32_t poses;  ///< StepScratch::poses.
+  std::uint32_t poses;  ///< Lot::poses.
   bool slides_far;      ///< StepScratch::slides_far.
 };
 

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -10,19 +12,20 @@ static constexpr int kBounceSweeps = 4;
 /// Reads masses, arms, deltas and velocities with this substep's gravity in them; writes velocities
 /// and bounce impulses. Colour after colour (for_each_by_color). Nothing where no material bounces.
 template <int D, int W>
-void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
+void bounce_contacts(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                     StepScratch<D>& scratch) {
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   if (!contacts.bounces) return;
-  ContactKernels<D, W>::forget_bounces(
-      block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
+  const BlockRange<D, W> all = block_range<D, W>(lot, scratch, contacts.blocks_of(lot));
+  ContactKernels<D, W>::forget_bounces(all);
   for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {
-    for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
-      ContactKernels<D, W>::bounce(context, block_range<D, W>(scratch, range));
+    for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+      ContactKernels<D, W>::bounce(context, blocks);
     });
     // Where nothing has bounced, the next sweep would see the same velocities.
-    bool any = false;
-    for (const ContactBlock<D, W>& block : contacts.blocks) any = any || block.bounced;
-    if (!any) return;
+    if (std::none_of(all.begin, all.end,
+                     [](const ContactBlock<D, W>& block) { return block.bounced; }))
+      return;
   }
 }
 

@@ -1,18 +1,10 @@
+#include <algorithm>
 #include <bit>
+#include <iterator>
 
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
-
-/// More colours than this would leave each with too little to share among lanes and threads.
-static constexpr int kColorsMax = 28;
-
-struct BodyPair {
-  std::uint32_t a;
-  std::uint32_t b;
-  bool a_moves;
-  bool b_moves;
-};
 
 /// Places in the list of live constraints become their slots.
 static void name_slots(const std::vector<int>& live, Coloring& coloring) {
@@ -30,62 +22,70 @@ static void list_in_order(int count, bool reverse, Coloring& coloring) {
 
 /// No body of a constraint has a colour yet. The world may have many other bodies, that sleep.
 template <class PairOf>
-static void use_no_color(int count, PairOf&& pair_of, std::vector<std::uint32_t>& used) {
+static void use_no_color(std::size_t count, PairOf&& pair_of, std::vector<std::uint32_t>& used) {
   constexpr std::size_t kFew = 16;
-  if (used.size() <= kFew * static_cast<std::size_t>(count)) return used.assign(used.size(), 0);
-  for (int i = 0; i < count; ++i) {
-    const BodyPair pair = pair_of(i);
-    used[pair.a] = used[pair.b] = 0;
+  if (used.size() <= kFew * count) return used.assign(used.size(), 0);
+  for (std::size_t i = 0; i < count; ++i) {
+    const MovingPair pair = pair_of(i);
+    if (pair.a != kNone) used[pair.a] = 0;
+    if (pair.b != kNone) used[pair.b] = 0;
   }
 }
 
-/// Gives each constraint, in order, the lowest colour that neither of its moving bodies has yet.
+/// Gives each constraint, in order, the lowest colour that neither of its moving bodies has yet, or
+/// kColorsMax where there is none.
 template <class PairOf>
-static void color_in_order(int count, PairOf&& pair_of, std::vector<std::uint32_t>& used,
-                           std::vector<int>& color_of, Coloring& coloring) {
-  int size_of[kColorsMax + 1] = {};
-  color_of.resize(static_cast<std::size_t>(count));
+static void assign_colors(std::size_t count, PairOf&& pair_of, std::vector<std::uint32_t>& used,
+                          Colors& colors) {
+  colors.of.resize(count);
+  colors.pairs.resize(count);
+  std::fill(std::begin(colors.sizes), std::end(colors.sizes), 0);
   use_no_color(count, pair_of, used);
-  for (int i = 0; i < count; ++i) {
-    const BodyPair pair = pair_of(i);
+  for (std::size_t i = 0; i < count; ++i) {
+    const MovingPair pair = colors.pairs[i] = pair_of(i);
     const std::uint32_t taken =
-        (pair.a_moves ? used[pair.a] : 0) | (pair.b_moves ? used[pair.b] : 0);
+        (pair.a != kNone ? used[pair.a] : 0) | (pair.b != kNone ? used[pair.b] : 0);
     int color = std::countr_one(taken);
     if (color >= kColorsMax) color = kColorsMax;
     if (color < kColorsMax) {
-      if (pair.a_moves) used[pair.a] |= 1u << color;
-      if (pair.b_moves) used[pair.b] |= 1u << color;
+      if (pair.a != kNone) used[pair.a] |= 1u << color;
+      if (pair.b != kNone) used[pair.b] |= 1u << color;
     }
-    color_of[static_cast<std::size_t>(i)] = color;
-    ++size_of[color];
+    colors.of[i] = color;
+    ++colors.sizes[color];
   }
+}
+
+void sort_by_color(const Colors& colors, Coloring& coloring) {
   int next[kColorsMax + 1];
   int at = 0;
   coloring.colors.clear();
   for (int color = 0; color <= kColorsMax; ++color) {
     next[color] = at;
-    const Range range{at, at + size_of[color]};
+    const Range range{at, at + colors.sizes[color]};
     if (color == kColorsMax)
       coloring.overflow = range;
-    else if (size_of[color] > 0)
+    else if (colors.sizes[color] > 0)
       coloring.colors.push_back(range);
     at = range.end;
   }
-  coloring.order.resize(static_cast<std::size_t>(count));
-  for (int i = 0; i < count; ++i)
-    coloring.order[static_cast<std::size_t>(next[color_of[static_cast<std::size_t>(i)]]++)] = i;
+  coloring.order.resize(colors.of.size());
+  for (std::size_t i = 0; i < colors.of.size(); ++i)
+    coloring.order[static_cast<std::size_t>(next[colors.of[i]]++)] = static_cast<int>(i);
 }
 
 /// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes;
 /// or, where the tuning asks for an order, one line of each.
 ///
-/// Reads joints, live contacts and which bodies have mass; writes both colourings. Serial,
-/// because each choice depends on those before; a function of ids alone, so not of workers or
-/// history.
+/// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints, and
+/// the colour of each contact. Serial, because each choice depends on those before; a function of
+/// ids alone, so not of workers or history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   const std::vector<std::uint8_t>& has_mass = scratch.active_bodies.has_mass;
-  const auto moves = [&](std::uint32_t body) { return has_mass[body] != 0; };
+  const auto pair_of = [&](std::uint32_t a, std::uint32_t b) {
+    return MovingPair{has_mass[a] != 0 ? a : kNone, has_mass[b] != 0 ? b : kNone};
+  };
   std::vector<int>& joints = scratch.live_joints;
   joints.clear();
   for (int i = 0; i < static_cast<int>(state.joints.size()); ++i) {
@@ -93,34 +93,27 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
     if (joint.kind == JointKind::kFree) continue;
     if (scratch.awake[joint.body_a] != 0 || scratch.awake[joint.body_b] != 0) joints.push_back(i);
   }
-  const std::vector<LiveContact<D>>& contacts = scratch.live;
   const Order order = state.header.tuning.order;
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;
     list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
     name_slots(joints, scratch.joint_coloring);
-    list_in_order(static_cast<int>(contacts.size()), reverse, scratch.contact_coloring);
+    list_in_order(static_cast<int>(scratch.live.size()), reverse, scratch.contact_coloring);
+    std::fill(std::begin(scratch.colors.sizes), std::end(scratch.colors.sizes), 0);
     return;
   }
   scratch.used_colors.resize(state.bodies.size());
-  color_in_order(
-      static_cast<int>(joints.size()),
-      [&](int i) {
-        const auto slot = static_cast<std::size_t>(joints[static_cast<std::size_t>(i)]);
-        const Joint<D>& joint = state.joints[slot];
-        return BodyPair{joint.body_a, joint.body_b, moves(joint.body_a), moves(joint.body_b)};
-      },
-      scratch.used_colors, scratch.color_of, scratch.joint_coloring);
+  const auto pair_of_joint = [&](std::size_t i) {
+    const Joint<D>& joint = state.joints[static_cast<std::size_t>(joints[i])];
+    return pair_of(joint.body_a, joint.body_b);
+  };
+  assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.colors);
+  sort_by_color(scratch.colors, scratch.joint_coloring);
   name_slots(joints, scratch.joint_coloring);
-
-  color_in_order(
-      static_cast<int>(contacts.size()),
-      [&](int i) {
-        const LiveContact<D>& contact = contacts[static_cast<std::size_t>(i)];
-        return BodyPair{contact.body_a, contact.body_b, moves(contact.body_a),
-                        moves(contact.body_b)};
-      },
-      scratch.used_colors, scratch.color_of, scratch.contact_coloring);
+  const auto pair_of_contact = [&](std::size_t i) {
+    return pair_of(scratch.live[i].body_a, scratch.live[i].body_b);
+  };
+  assign_colors(scratch.live.size(), pair_of_contact, scratch.used_colors, scratch.colors);
 }
 
 template void color(const WorldState<2>&, StepScratch<2>&);

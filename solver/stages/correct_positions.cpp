@@ -9,10 +9,9 @@ namespace cycloid::solver {
 /// Reads masses, arms and joints; writes deltas. Colour after colour (for_each_by_color).
 template <int D, int W>
 void correct_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
-                       Workers& workers, StepScratch<D>& scratch) {
-  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+                       const Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   const std::span<Motion<D>> motions = scratch.motions;
-  for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
+  for_each_by_color(scratch.joint_coloring, workers, [&](int i) {
     JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];
     Motion<D> a = motions[row.body_a];
     Motion<D> b = motions[row.body_b];
@@ -20,8 +19,8 @@ void correct_positions(const StepContext<D>& context, const WorldState<D>& state
     correct_joint(context, row, a, b);
     write_back(row, a, b, motions);
   });
-  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
-    ContactKernels<D, W>::correct(context, block_range<D, W>(scratch, range));
+  for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    ContactKernels<D, W>::correct(context, blocks);
   });
 }
 

@@ -27,14 +27,12 @@ static void follow_inertia(const StepScratch<D>& scratch, ContactBlock<D, W>& bl
 /// Reads motions and masses; writes blocks, each its own, so any split into ranges gives the same
 /// bits. Says that positions have moved: the sweep that comes next places the arms.
 template <int D, int W>
-void evaluate_contacts(Workers& workers, StepScratch<D>& scratch) {
-  ++scratch.poses;
+void evaluate_contacts(Lot& lot, Workers& workers, StepScratch<D>& scratch) {
+  ++lot.poses;
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   constexpr bool kInertiaTurns = Dim<D>::kSpin > 1;
   if (!contacts.follows && !kInertiaTurns) return;
-  const int count = static_cast<int>(contacts.blocks.size());
-  workers.parallel_for(count, kBlockGrain, [&](Range range) {
-    const BlockRange<D, W> blocks = block_range<D, W>(scratch, range);
+  for_all_blocks<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
     if (contacts.follows) ContactKernels<D, W>::follow(blocks);
     if (!kInertiaTurns) return;
     for (ContactBlock<D, W>* block = blocks.begin; block != blocks.end; ++block)

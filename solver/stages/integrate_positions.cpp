@@ -19,11 +19,11 @@ static bool turn_inertia(float h, const Body<3>& body, const Motion<3>& motion, 
   return true;
 }
 
-/// What follows of the new rotations of the bodies at these places of awake_bodies.
+/// What follows of the new rotations of the bodies at these places of moving_bodies.
 static void turn_masses(float h, const WorldState<3>& state, Range range, StepScratch<3>& scratch) {
   for (auto place = static_cast<std::size_t>(range.begin);
        place < static_cast<std::size_t>(range.end); ++place) {
-    const std::uint32_t slot = scratch.awake_bodies[place];
+    const std::uint32_t slot = scratch.moving_bodies[place];
     const Body<3>& body = state.bodies[slot];
     const bool turned = turn_inertia(h, body, scratch.motions[slot], scratch.masses[slot]);
     scratch.inertia_turned[slot] = turned ? 1 : 0;
@@ -36,7 +36,7 @@ static void turn_masses(float h, const WorldState<3>& state, Range range, StepSc
 template <int D>
 static void move_by_pseudo_velocities(float h, Range range, StepScratch<D>& scratch) {
   for (int place = range.begin; place < range.end; ++place) {
-    const std::uint32_t slot = scratch.awake_bodies[static_cast<std::size_t>(place)];
+    const std::uint32_t slot = scratch.moving_bodies[static_cast<std::size_t>(place)];
     Motion<D>& motion = scratch.motions[slot];
     motion.delta_position += h * scratch.saved_motions[slot].velocity;
     turn_by(h * scratch.saved_motions[slot].spin, motion);
@@ -45,7 +45,7 @@ static void move_by_pseudo_velocities(float h, Range range, StepScratch<D>& scra
 
 template <int D>
 static std::span<const std::uint32_t> slots_of(Range range, const StepScratch<D>& scratch) {
-  return std::span(scratch.awake_bodies)
+  return std::span(scratch.moving_bodies)
       .subspan(static_cast<std::size_t>(range.begin),
                static_cast<std::size_t>(range.end - range.begin));
 }
@@ -105,19 +105,18 @@ static void move_range(const StepContext<3>& context, const WorldState<3>& state
 /// any; writes its deltas, and its inverse inertia in the world. Any split into ranges gives the
 /// same bits.
 template <int D>
-void integrate_positions(const StepContext<D>& context, const WorldState<D>& state,
+void integrate_positions(const StepContext<D>& context, const WorldState<D>& state, const Lot& lot,
                          Workers& workers, StepScratch<D>& scratch) {
   const bool pseudo = context.tuning.stabilisation == Stabilisation::kSplitImpulse;
-  const auto count = static_cast<int>(scratch.awake_bodies.size());
-  workers.parallel_for(count, kBodyGrain, [&](Range range) {
+  for_each_body_range(lot, workers, [&](Range range) {
     move_range(context, state, range, scratch);
     if (pseudo) move_by_pseudo_velocities(context.h, range, scratch);
   });
 }
 
-template void integrate_positions(const StepContext<2>&, const WorldState<2>&, Workers&,
+template void integrate_positions(const StepContext<2>&, const WorldState<2>&, const Lot&, Workers&,
                                   StepScratch<2>&);
-template void integrate_positions(const StepContext<3>&, const WorldState<3>&, Workers&,
+template void integrate_positions(const StepContext<3>&, const WorldState<3>&, const Lot&, Workers&,
                                   StepScratch<3>&);
 
 }  // namespace cycloid::solver

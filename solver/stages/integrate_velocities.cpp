@@ -9,14 +9,14 @@ namespace cycloid::solver {
 /// Reads the acceleration of each body that is awake; writes its motion's velocity and spin. Bodies
 /// without mass keep theirs. Any split into ranges gives the same bits.
 template <int D>
-void integrate_velocities(const StepContext<D>& context, Workers& workers,
+void integrate_velocities(const StepContext<D>& context, const Lot& lot, Workers& workers,
                           StepScratch<D>& scratch) {
   using L = Lanes<4>;
   const L h(context.h);
-  workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
+  for_each_body_range(lot, workers, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const Acceleration<D>& acceleration = scratch.accelerations[static_cast<std::size_t>(i)];
-      Motion<D>& motion = scratch.motions[scratch.awake_bodies[static_cast<std::size_t>(i)]];
+      Motion<D>& motion = scratch.motions[scratch.moving_bodies[static_cast<std::size_t>(i)]];
       for (int quad = 0; quad < kVelocityQuads<D>; ++quad) {
         const L factor = L::load(acceleration.factor + 4 * quad);
         const L rate = L::load(acceleration.rate + 4 * quad);
@@ -28,7 +28,7 @@ void integrate_velocities(const StepContext<D>& context, Workers& workers,
   });
 }
 
-template void integrate_velocities(const StepContext<2>&, Workers&, StepScratch<2>&);
-template void integrate_velocities(const StepContext<3>&, Workers&, StepScratch<3>&);
+template void integrate_velocities(const StepContext<2>&, const Lot&, Workers&, StepScratch<2>&);
+template void integrate_velocities(const StepContext<3>&, const Lot&, Workers&, StepScratch<3>&);
 
 }  // namespace cycloid::solver

@@ -86,32 +86,34 @@ void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, W
                     StepScratch<D>& scratch) {
   rest_all(state, scratch);
   list_met(state, scratch);
-  scratch.accelerations.resize(scratch.awake_bodies.size());
+  scratch.accelerations.resize(scratch.moving_bodies.size());
   constexpr float kFar = 1.0f;  // m in a tick.
   const float far_speed = kFar / context.tick_s;
   Tally far;
-  workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
-    bool any_far = false;
-    for (int i = range.begin; i < range.end; ++i) {
-      const auto place = static_cast<std::size_t>(i);
-      const std::uint32_t slot = scratch.awake_bodies[place];
-      const Body<D>& body = state.bodies[slot];
-      any_far = any_far || dot(body.velocity, body.velocity) > far_speed * far_speed;
-      scratch.motions[slot] = {body.velocity, body.spin, Vec<D>::zero(), identity_rotation<D>()};
-      scratch.masses[slot] = {body.inverse_mass,
-                              world_inertia(body.inverse_inertia, body.rotation)};
-      scratch.accelerations[place] = acceleration_of(context, body, scratch.masses[slot]);
-    }
-    if (any_far) far.add(1);
-  });
+  workers.parallel_for(
+      static_cast<int>(scratch.moving_bodies.size()), kBodyGrain, [&](Range range) {
+        bool any_far = false;
+        for (int i = range.begin; i < range.end; ++i) {
+          const auto place = static_cast<std::size_t>(i);
+          const std::uint32_t slot = scratch.moving_bodies[place];
+          const Body<D>& body = state.bodies[slot];
+          any_far = any_far || dot(body.velocity, body.velocity) > far_speed * far_speed;
+          scratch.motions[slot] = {body.velocity, body.spin, Vec<D>::zero(),
+                                   identity_rotation<D>()};
+          scratch.masses[slot] = {body.inverse_mass,
+                                  world_inertia(body.inverse_inertia, body.rotation)};
+          scratch.accelerations[place] = acceleration_of(context, body, scratch.masses[slot]);
+        }
+        if (any_far) far.add(1);
+      });
   scratch.slides_far = far.sum() > 0;
 }
 
 template <int D>
 void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
                    StepScratch<D>& scratch) {
-  for (std::size_t place = 0; place < scratch.awake_bodies.size(); ++place) {
-    const Body<D>& body = state.bodies[scratch.awake_bodies[place]];
+  for (std::size_t place = 0; place < scratch.moving_bodies.size(); ++place) {
+    const Body<D>& body = state.bodies[scratch.moving_bodies[place]];
     if (body.inverse_mass > 0.0f) dampen(context.h, body, scratch.accelerations[place]);
   }
 }

@@ -88,13 +88,24 @@ static void set_extra(const StepContext<D>& context, const WorldState<D>& state,
     set_materials(context, state, contact, live, materials, lane, contacts.extra_of(place), block);
 }
 
-/// Which contacts of the colouring's order a block holds.
-static Range contacts_of_block(const Range& color, int block, int width) {
-  const int begin = color.begin + block * width;
-  return {begin, begin + width < color.end ? begin + width : color.end};
+/// Shares the contacts of each colour out to blocks of W; the overflow gets one contact per block.
+template <int D, int W>
+static void lay_out(const Coloring& coloring, ContactBlocks<D, W>& out) {
+  out.members.clear();
+  const auto add = [&](const Range& color, int width) {
+    const auto first = static_cast<int>(out.members.size());
+    for (int begin = color.begin; begin < color.end; begin += width)
+      out.members.push_back({begin, begin + width < color.end ? begin + width : color.end});
+    return Range{first, static_cast<int>(out.members.size())};
+  };
+  out.colors.clear();
+  for (const Range& color : coloring.colors) out.colors.push_back(add(color, kLaneCount<W>));
+  out.overflow = add(coloring.overflow, 1);
+  out.blocks.resize(out.members.size());
+  out.extras.resize(out.members.size());
 }
 
-/// Fills blocks of W contacts, colour by colour; the overflow gets one contact per block.
+/// Fills blocks of W contacts, colour by colour.
 ///
 /// Reads live contacts, their impulses, materials, masses, bodies and colouring; writes the blocks
 /// of width W, each from its own contacts, so any split into ranges gives the same bits.
@@ -106,20 +117,11 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
   const ContactInputs<D> inputs{scratch.live.data(), scratch.contacts.data(), scratch.masses.data(),
                                 static_cast<std::uint32_t>(state.bodies.size()),
                                 context.tuning.warm_starting};
-  out.colors.clear();
-  int blocks = 0;
-  for (const Range& color : coloring.colors) {
-    const int count = (color.end - color.begin + kLaneCount<W> - 1) / kLaneCount<W>;
-    out.colors.push_back({blocks, blocks + count});
-    blocks += count;
-  }
-  out.overflow = {blocks, blocks + coloring.overflow.end - coloring.overflow.begin};
-  out.blocks.resize(static_cast<std::size_t>(out.overflow.end));
-  out.extras.resize(out.blocks.size());
+  lay_out(coloring, out);
   const bool always_extra = context.tuning.stabilisation == Stabilisation::kXpbd ||
                             context.tuning.stabilisation == Stabilisation::kSplitImpulse;
-  const auto fill = [&](int block, Range members) {
-    const auto place = static_cast<std::size_t>(block);
+  const auto fill = [&](std::size_t place) {
+    const Range members = out.members[place];
     const int* places = coloring.order.data() + members.begin;
     const int count = members.end - members.begin;
     static_assert(std::is_trivially_copyable_v<ContactBlock<D, W>>);
@@ -132,25 +134,16 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
     }
   };
   const LoadBounds bounds = load_bounds(context);
-  for (std::size_t c = 0; c < out.colors.size(); ++c) {
-    const Range color = out.colors[c];
-    workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
-      for (int i = range.begin; i < range.end; ++i)
-        fill(color.begin + i, contacts_of_block(coloring.colors[c], i, kLaneCount<W>));
-      ContactKernels<D, W>::complete(
-          bounds, block_range<D, W>(scratch, {color.begin + range.begin, color.begin + range.end}));
-    });
-  }
-  for (int i = out.overflow.begin; i < out.overflow.end; ++i)
-    fill(i, contacts_of_block(coloring.overflow, i - out.overflow.begin, 1));
-  ContactKernels<D, W>::complete(bounds, block_range<D, W>(scratch, out.overflow));
+  workers.parallel_for(static_cast<int>(out.blocks.size()), kBlockGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) fill(static_cast<std::size_t>(i));
+    ContactKernels<D, W>::complete(bounds, block_range<D, W>({}, scratch, range));
+  });
   out.follows = false;
   out.bounces = false;
   for (const ContactBlock<D, W>& block : out.blocks) {
     out.follows = out.follows || block.follows;
     out.bounces = out.bounces || block.bounces;
   }
-  scratch.poses = 0;
 }
 
 template <int D, int W>

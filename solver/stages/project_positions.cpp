@@ -42,19 +42,18 @@ static void drive_joints(const StepContext<D>& context, StepScratch<D>& scratch)
 /// springs and motors stay velocity rows, and an overlap leaves at push_speed_max at most.
 template <int D, int W>
 void project_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
-                       Workers& workers, StepScratch<D>& scratch) {
-  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+                       Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   const std::span<Motion<D>> motions = scratch.motions;
-  integrate_velocities(context, workers, scratch);
-  evaluate_contacts<D, W>(workers, scratch);
-  bounce_contacts<D, W>(context, workers, scratch);
+  integrate_velocities(context, lot, workers, scratch);
+  evaluate_contacts<D, W>(lot, workers, scratch);
+  bounce_contacts<D, W>(context, lot, workers, scratch);
   evaluate_joints(context, state, time_s, workers, scratch);
   drive_joints(context, scratch);
   scratch.saved_motions = scratch.motions;
-  integrate_positions(context, state, workers, scratch);
+  integrate_positions(context, state, lot, workers, scratch);
   const std::uint32_t sweeps = context.tuning.position_sweeps;
   for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
-    for_each_by_color(scratch.joint_coloring, workers, kBlockGrain, [&](int i) {
+    for_each_by_color(scratch.joint_coloring, workers, [&](int i) {
       JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];
       Motion<D> a = motions[row.body_a];
       Motion<D> b = motions[row.body_b];
@@ -62,14 +61,13 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
       correct_joint(context, row, a, b);
       write_back(row, a, b, motions);
     });
-    for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
-      ContactKernels<D, W>::project(context, scratch.saved_motions.data(),
-                                    block_range<D, W>(scratch, range));
+    for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+      ContactKernels<D, W>::project(context, scratch.saved_motions.data(), blocks);
     });
   }
   take_velocities(context, state, scratch);
-  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
-    ContactKernels<D, W>::rub(context, block_range<D, W>(scratch, range));
+  for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    ContactKernels<D, W>::rub(context, blocks);
   });
 }
 

@@ -17,8 +17,7 @@ static void with_bodies(JointRow<D>& row, std::span<Motion<D>> motions, Act&& ac
 ///
 /// Reads the accumulated impulses; writes velocities. Colour after colour (for_each_by_color).
 template <int D, int W>
-void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
-  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+void warm_start_constraints(const Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   const std::span<Motion<D>> motions = scratch.motions;
   for_each_joint_by_color(
       workers, scratch,
@@ -27,8 +26,8 @@ void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
         with_bodies<D>(joint, motions,
                        [](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { warm_start(row, a, b); });
       });
-  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
-    ContactKernels<D, W>::warm_start(block_range<D, W>(scratch, range));
+  for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    ContactKernels<D, W>::warm_start(blocks);
   });
 }
 
@@ -38,9 +37,8 @@ void warm_start_constraints(Workers& workers, StepScratch<D>& scratch) {
 /// two constraints share a body that moves, so neither lanes nor threads change a bit; the order of
 /// the colours is that of the ids.
 template <int D, int W>
-void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& workers,
+void solve_constraints(const StepContext<D>& context, Sweep sweep, const Lot& lot, Workers& workers,
                        StepScratch<D>& scratch) {
-  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const std::span<Motion<D>> motions = scratch.motions;
   solve_trees(context, sweep, scratch);
   for_each_joint_by_color(
@@ -51,8 +49,8 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& work
           solve(context, sweep, row, a, b);
         });
       });
-  for_each_range_by_color(contacts, workers, kBlockGrain, [&](Range range) {
-    ContactKernels<D, W>::sweep(context, sweep, block_range<D, W>(scratch, range));
+  for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    ContactKernels<D, W>::sweep(context, sweep, blocks);
   });
 }
 
@@ -85,11 +83,10 @@ static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>
 /// Reads the blocks; writes the impulses of the new contacts, each of its own, for the next tick's
 /// warm start.
 template <int D, int W>
-void store_impulses(Workers& workers, StepScratch<D>& scratch) {
-  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-  workers.parallel_for(static_cast<int>(contacts.blocks.size()), kBlockGrain, [&](Range range) {
-    for (int i = range.begin; i < range.end; ++i)
-      store_block(contacts.blocks[static_cast<std::size_t>(i)], scratch.contacts);
+void store_impulses(const Lot& lot, Workers& workers, StepScratch<D>& scratch) {
+  for_all_blocks<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    for (const ContactBlock<D, W>* block = blocks.begin; block != blocks.end; ++block)
+      store_block(*block, scratch.contacts);
   });
 }
 

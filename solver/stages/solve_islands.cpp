@@ -163,13 +163,13 @@ static void solve_island(const StepContext<D>& context, StepScratch<D>& scratch,
 /// Reads and writes velocities and impulses of contacts and joints, and which lanes are settled.
 /// Serial, island by island in the order of their lowest slots.
 template <int D, int W>
-void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
+void solve_islands(const StepContext<D>& context, const Lot& lot, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   if (!solver.acts) return;
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   solver.tensions.clear();
-  ContactKernels<D, W>::look_for_rest(
-      context, kRest, block_range<D, W>(scratch, {0, static_cast<int>(contacts.blocks.size())}));
+  ContactKernels<D, W>::look_for_rest(context, kRest,
+                                      block_range<D, W>(lot, scratch, contacts.blocks_of(lot)));
   const Unrest all = begin_settling<D, W>(contacts);
   with_blocks(scratch.pins, [&]<int P>(PinBlocks<D, P>& pins) {
     const Range range{0, static_cast<int>(pins.blocks.size())};

@@ -35,7 +35,7 @@ static void forget_impulses(std::vector<JointRow<D>>& rows) {
 /// and velocities and impulses as they were. Colour after colour (solve_constraints). Source:
 /// Catto, "Understanding Constraints" (GDC 2014), pseudo-velocities.
 template <int D, int W>
-void solve_pseudo_velocities(const StepContext<D>& context, Workers& workers,
+void solve_pseudo_velocities(const StepContext<D>& context, const Lot& lot, Workers& workers,
                              StepScratch<D>& scratch) {
   auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   scratch.saved_motions.assign(scratch.motions.size(), Motion<D>{});
@@ -46,7 +46,7 @@ void solve_pseudo_velocities(const StepContext<D>& context, Workers& workers,
   exchange_impulses(blocks);
   forget_impulses(scratch.joint_rows);
   for (std::uint32_t sweep = 0; sweep < context.tuning.position_sweeps; ++sweep)
-    solve_constraints<D, W>(context, Sweep::kPseudo, workers, scratch);
+    solve_constraints<D, W>(context, Sweep::kPseudo, lot, workers, scratch);
   exchange_velocities(scratch.motions, scratch.saved_motions);
   exchange_impulses(blocks);
   scratch.joint_rows.swap(scratch.saved_rows);

@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "solver/collision/collide.hpp"
 #include "solver/constraints/contact_kernels.hpp"
 #include "solver/constraints/pin_kernels.hpp"
@@ -25,6 +27,11 @@ void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch);
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch);
+/// Lists constraints colour after colour, and those of kColorsMax as overflow.
+void sort_by_color(const Colors& colors, Coloring& coloring);
+template <int D>
+void divide_into_lots(const StepContext<D>& context, const WorldState<D>& state,
+                      StepScratch<D>& scratch);
 template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch);
@@ -43,11 +50,13 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch);
 
 template <int D>
-void integrate_velocities(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
+void integrate_velocities(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                          StepScratch<D>& scratch);
 template <int D, int W>
-void evaluate_contacts(Workers& workers, StepScratch<D>& scratch);
+void evaluate_contacts(Lot& lot, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
-void bounce_contacts(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
+void bounce_contacts(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                     StepScratch<D>& scratch);
 template <int D>
 void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, float time_s,
                      Workers& workers, StepScratch<D>& scratch);
@@ -72,30 +81,30 @@ StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D
 template <int D, int W>
 void rescale_impulses(float scale, StepScratch<D>& scratch);
 template <int D, int W>
-void solve_islands(const StepContext<D>& context, StepScratch<D>& scratch);
+void solve_islands(const StepContext<D>& context, const Lot& lot, StepScratch<D>& scratch);
 template <int D>
 void correct_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>
-void warm_start_constraints(Workers& workers, StepScratch<D>& scratch);
+void warm_start_constraints(const Lot& lot, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
-void solve_constraints(const StepContext<D>& context, Sweep sweep, Workers& workers,
+void solve_constraints(const StepContext<D>& context, Sweep sweep, const Lot& lot, Workers& workers,
                        StepScratch<D>& scratch);
 template <int D>
-void integrate_positions(const StepContext<D>& context, const WorldState<D>& state,
+void integrate_positions(const StepContext<D>& context, const WorldState<D>& state, const Lot& lot,
                          Workers& workers, StepScratch<D>& scratch);
 
 template <int D, int W>
-void solve_pseudo_velocities(const StepContext<D>& context, Workers& workers,
+void solve_pseudo_velocities(const StepContext<D>& context, const Lot& lot, Workers& workers,
                              StepScratch<D>& scratch);
 template <int D, int W>
 void correct_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
-                       Workers& workers, StepScratch<D>& scratch);
+                       const Lot& lot, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
 void project_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
-                       Workers& workers, StepScratch<D>& scratch);
+                       Lot& lot, Workers& workers, StepScratch<D>& scratch);
 
 template <int D, int W>
-void store_impulses(Workers& workers, StepScratch<D>& scratch);
+void store_impulses(const Lot& lot, Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void store_pins(StepScratch<D>& scratch);
 template <int D>
@@ -118,22 +127,22 @@ inline constexpr int kBlockGrain = 16;
 inline constexpr int kJointGrain = 32;
 
 /// Runs `run(range)` for ranges of every colour in order, those of one colour in parallel, and for
-/// the overflow one by one: `for_each_by_color` for whole ranges.
-template <class Colors, class Run>
-void for_each_range_by_color(const Colors& colors, Workers& workers, int grain, Run&& run) {
-  for (const Range& color : colors.colors)
-    workers.parallel_for(color.end - color.begin, grain, [&](Range range) {
+/// the overflow one by one. The one place that knows why lanes and threads cannot change a bit:
+/// what runs at the same time shares no body that moves.
+template <class Run>
+void for_each_range_by_color(std::span<const Range> colors, Range overflow, Workers& workers,
+                             Run&& run) {
+  for (const Range& color : colors)
+    workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
       run(Range{color.begin + range.begin, color.begin + range.end});
     });
-  for (int i = colors.overflow.begin; i < colors.overflow.end; ++i) run(Range{i, i + 1});
+  for (int i = overflow.begin; i < overflow.end; ++i) run(Range{i, i + 1});
 }
 
-/// Runs `run(index)` for every constraint, colour after colour; inside a colour in parallel, the
-/// overflow one by one. The one place that knows why lanes and threads cannot change a bit: what
-/// runs at the same time shares no body that moves.
-template <class Colors, class Run>
-void for_each_by_color(const Colors& colors, Workers& workers, int grain, Run&& run) {
-  for_each_range_by_color(colors, workers, grain, [&](Range range) {
+/// Runs `run(index)` for every constraint: for_each_range_by_color.
+template <class Run>
+void for_each_by_color(const Coloring& coloring, Workers& workers, Run&& run) {
+  for_each_range_by_color(coloring.colors, coloring.overflow, workers, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) run(i);
   });
 }
@@ -172,10 +181,39 @@ void for_each_joint_by_color(Workers& workers, StepScratch<D>& scratch, OnPins&&
 
 /// What a kernel of contacts works on. @pre the blocks of the range share no body that moves.
 template <int D, int W>
-BlockRange<D, W> block_range(StepScratch<D>& scratch, Range range) {
+BlockRange<D, W> block_range(const Lot& lot, StepScratch<D>& scratch, Range range) {
   ContactBlock<D, W>* blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks.data();
-  return {blocks + range.begin, blocks + range.end, scratch.motions.data(), scratch.poses,
+  return {blocks + range.begin, blocks + range.end, scratch.motions.data(), lot.poses,
           scratch.slides_far};
+}
+
+/// Runs `run(BlockRange)` for the contacts of a lot: for_each_range_by_color.
+template <int D, int W, class Run>
+void for_each_block_range(const Lot& lot, Workers& workers, StepScratch<D>& scratch, Run&& run) {
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const std::span<const Range> colors =
+      std::span(contacts.colors)
+          .subspan(static_cast<std::size_t>(lot.colors.begin),
+                   static_cast<std::size_t>(lot.colors.end - lot.colors.begin));
+  for_each_range_by_color(colors, lot.overflow, workers,
+                          [&](Range range) { run(block_range<D, W>(lot, scratch, range)); });
+}
+
+/// Runs `run(BlockRange)` for all blocks of a lot at once, whatever their colour.
+template <int D, int W, class Run>
+void for_all_blocks(const Lot& lot, Workers& workers, StepScratch<D>& scratch, Run&& run) {
+  const Range all = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks_of(lot);
+  workers.parallel_for(all.end - all.begin, kBlockGrain, [&](Range range) {
+    run(block_range<D, W>(lot, scratch, {all.begin + range.begin, all.begin + range.end}));
+  });
+}
+
+/// Runs `run(range)` for ranges of the places of a lot's bodies in moving_bodies.
+template <class Run>
+void for_each_body_range(const Lot& lot, Workers& workers, Run&& run) {
+  workers.parallel_for(lot.bodies.end - lot.bodies.begin, kBodyGrain, [&](Range range) {
+    run(Range{lot.bodies.begin + range.begin, lot.bodies.begin + range.end});
+  });
 }
 
 }  // namespace cycloid::solver

@@ -85,23 +85,27 @@ TEST_P(Catalogue, DigestsAreTheGoldens) {
 }
 
 // Two worlds side by side, compared after every tick, so that a failure names the first bad one.
-TEST_P(Catalogue, WorkersAndLanesAreInvisible) {
+TEST_P(Catalogue, WorkersLanesAndLotsAreInvisible) {
   struct Setting {
     int workers;
     int lanes;
+    std::uint32_t lot_contacts;
   };
   const Scene scene = this->scene();
-  for (const Setting setting : {Setting{2, 4}, Setting{3, 1}, Setting{1, 8}, Setting{8, 16}}) {
+  for (const Setting setting :
+       {Setting{2, 4, 8}, Setting{3, 1, 1}, Setting{1, 8, 30}, Setting{8, 16, 0}}) {
     Simulation one = start(scene);
     Simulation other = start(scene);
     ASSERT_TRUE(one.set_lanes(4).ok());
     ASSERT_TRUE(other.set_lanes(setting.lanes).ok());
     ASSERT_TRUE(other.set_workers(setting.workers).ok());
+    other.set_lot_contacts(setting.lot_contacts);
     for (int tick = 1; tick <= 60; ++tick) {
       step(scene, one);
       step(scene, other);
       ASSERT_EQ(one.digest(), other.digest())
-          << "tick " << tick << ", workers " << setting.workers << ", lanes " << setting.lanes;
+          << "tick " << tick << ", workers " << setting.workers << ", lanes " << setting.lanes
+          << ", contacts of a lot " << setting.lot_contacts;
       // What was solved in vain shows in no digest of this tick, but may in one of another scene.
       ASSERT_EQ(one.statistics().rows, other.statistics().rows)
           << "tick " << tick << ", lanes " << setting.lanes;

@@ -52,7 +52,7 @@ enum class Revisit : std::uint8_t {
   kFreshWorld,    ///< Encoded, and decoded into a world that was just made.
   kAfterAnother,  ///< Saved; steps on and loses bodies; restored.
   kMove,          ///< The world moves to another place.
-  kSettings,      ///< Other workers and lanes from now on.
+  kSettings,      ///< Other workers, lanes and lots from now on.
   kStranger,      ///< From now on another world steps in between.
   kLook,          ///< Every const call.
   kCount,
@@ -70,6 +70,7 @@ struct Command {
 struct Setting {
   int workers = 1;
   int lanes = 4;
+  int lot_contacts = 0;
 };
 
 /// A scene and all that happens to it, played in two settings.

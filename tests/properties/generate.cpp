@@ -44,7 +44,8 @@ static rc::Gen<Command> command() {
 }
 
 static rc::Gen<Setting> setting() {
-  return rc::gen::construct<Setting>(rc::gen::element(1, 2, 3, 8), rc::gen::element(4, 1, 8, 16));
+  return rc::gen::construct<Setting>(rc::gen::element(1, 2, 3, 8), rc::gen::element(4, 1, 8, 16),
+                                     rc::gen::element(0, 1, 3, 12));
 }
 
 rc::Gen<Case> cases(int dimension) {

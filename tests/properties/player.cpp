@@ -32,7 +32,8 @@ static Id one_of(const std::vector<Id>& ids, std::uint32_t choice) {
 static Setting setting_of(std::uint32_t choice) {
   constexpr int kWorkers[] = {1, 2, 3, 8};
   constexpr int kLanes[] = {4, 1, 8, 16};
-  return {kWorkers[choice % 4], kLanes[choice / 4 % 4]};
+  constexpr int kLots[] = {0, 1, 3, 12};
+  return {kWorkers[choice % 4], kLanes[choice / 4 % 4], kLots[choice / 16 % 4]};
 }
 
 template <int D>
@@ -50,6 +51,7 @@ std::unique_ptr<World<D>> Player<D>::make_world() const {
   register_shelf(*world);
   (void)world->set_workers(setting_.workers);
   (void)world->set_lanes(setting_.lanes);
+  world->set_lot_contacts(static_cast<std::uint32_t>(setting_.lot_contacts));
   // Steps of all cases, one after the other, in one memory: what is left in it must not show.
   static const auto kMemory = solver::make_step_memory<D>();
   if (revisits_) world->use_step_memory(kMemory);
@@ -282,6 +284,7 @@ void Player<D>::revisit(const Command& command) {
       setting_ = setting_of(command.a);
       (void)world_->set_workers(setting_.workers);
       (void)world_->set_lanes(setting_.lanes);
+      world_->set_lot_contacts(static_cast<std::uint32_t>(setting_.lot_contacts));
       return;
     case Revisit::kStranger:
       stranger_ = make_world();

@@ -130,11 +130,11 @@ INSTANTIATE_TEST_SUITE_P(Flaws, KnownFlaw,
 
 TEST(PropertyCase, IsShownAsCodeThatMakesItAgain) {
   const Case example{
-      2, 3, 1, 9, {1, 4}, {8, 16}, {{Op::kCreateBody, 0, 0, {1, 2}}, {Op::kStep, 2, 0, {}}}};
+      2, 3, 1, 9, {1, 4, 0}, {8, 16, 3}, {{Op::kCreateBody, 0, 0, {1, 2}}, {Op::kStep, 2, 0, {}}}};
   std::ostringstream text;
   text << example;
   EXPECT_EQ(text.str(),
-            "Case{2, 3, 1, 9, {1, 4}, {8, 16}, {\n"
+            "Case{2, 3, 1, 9, {1, 4, 0}, {8, 16, 3}, {\n"
             "    {Op::kCreateBody, 0, 0, {1, 2, 0, 0, 0, 0, 0, 0}},  // dynamic of 1 shapes at "
             "0.07 0.14\n"
             "    {Op::kStep, 2, 0, {0, 0, 0, 0, 0, 0, 0, 0}},  // 3 ticks\n"

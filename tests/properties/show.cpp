@@ -19,7 +19,7 @@ static constexpr const char* kRevisitNames[] = {"saved and restored",
                                                 "decoded into a new world",
                                                 "restored after other ticks",
                                                 "moved",
-                                                "other workers and lanes",
+                                                "other workers, lanes and lots",
                                                 "a stranger beside it",
                                                 "looked at"};
 static_assert(std::size(kRevisitNames) == static_cast<std::size_t>(Revisit::kCount));
@@ -59,7 +59,7 @@ static void remark(const Case& example, const Command& command, std::ostream& ou
 
 std::ostream& operator<<(std::ostream& out, const Case& example) {
   const auto setting = [&](const Setting& of) {
-    out << '{' << of.workers << ", " << of.lanes << "}, ";
+    out << '{' << of.workers << ", " << of.lanes << ", " << of.lot_contacts << "}, ";
   };
   out << "Case{" << example.dimension << ", " << example.tuning << ", " << example.ground << ", "
       << example.gravity << ", ";

@@ -1,0 +1,54 @@
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "solver/workers.hpp"
+
+namespace cycloid::solver {
+
+/// The bodies of a joint or contact that move: slots, or kNone.
+struct MovingPair {
+  std::uint32_t a;
+  std::uint32_t b;
+};
+
+/// Constraints by colour: no two of one colour share a body that moves. `order` lists colour after
+/// colour; the last range holds what fitted none, to be solved one after the other.
+struct Coloring {
+  std::vector<int> order;
+  std::vector<Range> colors;  ///< Of divided contacts, those of lot after lot.
+  Range overflow;
+};
+
+/// More colours than this would leave each with too little to share among lanes and threads.
+inline constexpr int kColorsMax = 28;
+
+/// The colour of each constraint, and what it joins.
+struct Colors {
+  std::vector<MovingPair> pairs;
+  std::vector<int> of;             ///< kColorsMax: none.
+  int sizes[kColorsMax + 1] = {};  ///< By colour.
+};
+
+/// Whole islands that are solved from the first substep to the last, before or beside those of
+/// other lots: no two lots share a body that moves. A tick that is not divided is one lot.
+struct Lot {
+  Range bodies;             ///< Places in moving_bodies.
+  Range colors;             ///< Of its contacts, among those of all.
+  Range overflow;           ///< Blocks in no colour; none where the tick is divided.
+  std::uint32_t poses = 0;  ///< Grows whenever its bodies have moved in this tick.
+};
+
+/// How a tick is divided into lots, and what divide_into_lots works in.
+struct Lots {
+  std::vector<Lot> all;                ///< None where the tick is not divided.
+  std::vector<std::uint32_t> of_body;  ///< By slot, from whatever tick; none where none are known.
+  std::uint32_t count = 0;             ///< Of those.
+  std::vector<std::uint32_t> of_contact;
+  std::vector<std::uint32_t> parent;    ///< By slot: another body of its island, or itself.
+  std::vector<std::uint32_t> contacts;  ///< Of an island, by its lowest slot.
+  std::vector<int> ends;                ///< Of counting_sort.
+};
+
+}  // namespace cycloid::solver
