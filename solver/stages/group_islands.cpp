@@ -87,9 +87,11 @@ static bool want_islands(IslandSolver<D>& solver) {
   for (auto& island : solver.islands) island.wanted = !solver.only_thin;
   if (!solver.only_thin) return true;
   bool any = false;
+  int last = -1;
   for (const std::uint32_t slot : solver.loaded) {
     const int at = solver.island_of[slot];
-    if (at < 0) continue;
+    if (at < 0 || at == last) continue;  // A heap is loaded in thousands of places.
+    last = at;
     auto& island = solver.islands[static_cast<std::size_t>(at)];
     if (island.wanted) continue;
     island.wanted = is_thin<D>(island) || may_be_weighed<D>(island);
