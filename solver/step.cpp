@@ -101,7 +101,7 @@ template <int D, int W>
 static void solve_lots(float tick_h, const StepContext<D>& context, const WorldState<D>& state,
                        const Tracer<D>& traced, Workers& workers, StepScratch<D>& scratch) {
   std::vector<Lot>& lots = scratch.lots.all;
-  if (lots.empty() || scratch.islands_solved.acts || scratch.trace != nullptr) {
+  if (lots.empty() || scratch.islands_solved.acts || scratch.kept->trace != nullptr) {
     const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
     Lot whole{{0, static_cast<int>(scratch.moving_bodies.size())},
               {0, static_cast<int>(contacts.colors.size())},
@@ -295,7 +295,7 @@ Error World<D>::step_in_lanes() {
   traced(Phase::kPairs);
   if (paired) {
     collide_pairs(context, state_, *workers_, scratch);
-    if (is_written(scratch.trace)) take_in_resting(state_, scratch);
+    if (is_written(scratch.kept->trace)) take_in_resting(state_, scratch);
     traced(Phase::kCollide);  // Else there is nothing of this tick to look at.
   }
   if (!paired || contact_count(state_, scratch) > state_.header.limits.contacts) {

@@ -11,18 +11,18 @@ namespace cycloid::solver {
 template <int D>
 struct StepMemory : Depot<StepScratch<D>> {};
 
-/// The memory of one step, and in it what its world keeps, as long as this lives.
+/// The memory of one step, with what its world keeps, as long as this lives.
 template <int D>
 class StepLoan {
  public:
   StepLoan(StepMemory<D>& memory, KeptByWorld<D>& kept)
-      : memory_(memory), kept_(kept), scratch_(memory.borrow()) {
-    exchange();
+      : memory_(memory), scratch_(memory.borrow()) {
+    scratch_->kept = &kept;
   }
   StepLoan(const StepLoan&) = delete;
   StepLoan& operator=(const StepLoan&) = delete;
   ~StepLoan() {
-    exchange();
+    scratch_->kept = nullptr;
     // Or the next edit of the world would have to make a copy.
     scratch_->before.shapes = {};
     scratch_->before.links = {};
@@ -31,10 +31,7 @@ class StepLoan {
   StepScratch<D>& scratch() { return *scratch_; }
 
  private:
-  void exchange() { std::swap(kept_, static_cast<KeptByWorld<D>&>(*scratch_)); }
-
   StepMemory<D>& memory_;
-  KeptByWorld<D>& kept_;
   std::unique_ptr<StepScratch<D>> scratch_;
 };
 

@@ -121,10 +121,11 @@ struct ContactList {
 };
 
 /// Everything a step computes and throws away: nothing in here that shows outlives a tick, so
-/// nothing in here is state. Lent for a step: what is left in it may be another world's, but for
-/// what the world keeps, which is put in for that time (step_memory.hpp).
+/// nothing in here is state. Lent for a step (step_memory.hpp): what is left in it may be another
+/// world's.
 template <int D>
-struct StepScratch : KeptByWorld<D>, ContactList<D> {
+struct StepScratch : ContactList<D> {
+  KeptByWorld<D>* kept = nullptr;  ///< Of the world whose step it is lent for.
   std::vector<typename BoundsTree<D>::Leaf> leaves;
   std::vector<std::uint32_t> looking;  ///< Shapes that look for their candidates anew.
   std::vector<std::uint32_t> leaving;  ///< Shapes that left their fat boxes.

@@ -21,9 +21,9 @@ std::uint32_t OldContacts<D>::lower_bound(std::uint64_t wanted) const {
 
 template <int D>
 void list_active_contacts(const WorldState<D>& state, StepScratch<D>& scratch) {
-  ActiveContacts& known = scratch.active_contacts;
+  ActiveContacts& known = scratch.kept->active_contacts;
   if (known.is_known) return;
-  const std::vector<std::uint8_t>& active = scratch.pair_cache.active;
+  const std::vector<std::uint8_t>& active = scratch.kept->pair_cache.active;
   known.places.clear();
   for (std::uint32_t i = 0; i < state.contacts.size(); ++i) {
     const Contact<D>& contact = state.contacts[i];
@@ -37,7 +37,8 @@ void list_active_contacts(const WorldState<D>& state, StepScratch<D>& scratch) {
 template <int D>
 std::size_t contact_count(const WorldState<D>& state, const StepScratch<D>& scratch) {
   if (scratch.contacts_are_all) return scratch.contacts.size();
-  return scratch.contacts.size() + state.contacts.size() - scratch.active_contacts.places.size();
+  return scratch.contacts.size() + state.contacts.size() -
+         scratch.kept->active_contacts.places.size();
 }
 
 /// Appends the resting contacts from `old` on whose key is below, as many as possible at once.
@@ -78,11 +79,11 @@ void take_in_resting(const WorldState<D>& state, StepScratch<D>& scratch) {
   std::uint32_t old = 0;
   std::size_t next = 0;
   for (const Contact<D>& contact : scratch.contacts) {
-    append_resting(state, scratch.active_contacts.places, key_of(contact), old, next, merged);
+    append_resting(state, scratch.kept->active_contacts.places, key_of(contact), old, next, merged);
     places.push_back(static_cast<std::uint32_t>(merged.size()));
     merged.push_back(contact);
   }
-  append_resting(state, scratch.active_contacts.places, ~std::uint64_t{0}, old, next, merged);
+  append_resting(state, scratch.kept->active_contacts.places, ~std::uint64_t{0}, old, next, merged);
   scratch.contacts.swap(merged);
   for (LiveContact<D>& live : scratch.live) live.contact = places[live.contact];
   for (std::uint32_t& began : scratch.began) began = places[began];
@@ -92,7 +93,7 @@ void take_in_resting(const WorldState<D>& state, StepScratch<D>& scratch) {
 /// Whether the contacts of the tick are those of the state that do not rest, of the same shapes.
 template <int D>
 static bool are_the_same(const WorldState<D>& state, const StepScratch<D>& scratch) {
-  const OldContacts<D> old(state, scratch.active_contacts);
+  const OldContacts<D> old(state, scratch.kept->active_contacts);
   if (scratch.contacts.size() != old.size()) return false;
   for (std::uint32_t i = 0; i < old.size(); ++i)
     if (key_of(scratch.contacts[i]) != old.key(i)) return false;
@@ -114,7 +115,7 @@ static void take_all(const std::vector<Contact<D>>& from, Workers& workers,
 
 template <int D>
 void take_contacts(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
-  ActiveContacts& active = scratch.active_contacts;
+  ActiveContacts& active = scratch.kept->active_contacts;
   if (active.are_all) return take_all(scratch.contacts, workers, state.contacts);
   if (scratch.contacts_are_all) {  // Some woke: which ones rest is to be found out anew.
     active.is_known = false;

@@ -110,7 +110,7 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
                           ContactList<D>& list) {
   const std::vector<ShapePair>& pairs = scratch.pairs;
   const auto key_at = [&](int i) { return pairs[static_cast<std::size_t>(i)].key(); };
-  const OldContacts<D> contacts(state, scratch.active_contacts);
+  const OldContacts<D> contacts(state, scratch.kept->active_contacts);
   std::uint32_t old = range.begin > 0 ? contacts.lower_bound(key_at(range.begin)) : 0;
   list.found.resize(kPairGrain);
   MaterialPair materials(state.materials);
@@ -177,7 +177,7 @@ void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Wo
   const int count = static_cast<int>(scratch.pairs.size());
   clear<D>(scratch);
   list_active_contacts(state, scratch);
-  scratch.contacts_are_all = scratch.active_contacts.are_all;
+  scratch.contacts_are_all = scratch.kept->active_contacts.are_all;
   if (workers.count() == 1 || count <= kChunk)
     return collide_range<D>(collider, context, state, scratch, {0, count}, scratch);
   const auto chunks = static_cast<std::size_t>((count + kChunk - 1) / kChunk);

@@ -82,7 +82,7 @@ void sort_by_color(const Colors& colors, Coloring& coloring) {
 /// ids alone, so not of workers or history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
-  const std::vector<std::uint8_t>& has_mass = scratch.active_bodies.has_mass;
+  const std::vector<std::uint8_t>& has_mass = scratch.kept->active_bodies.has_mass;
   const auto pair_of = [&](std::uint32_t a, std::uint32_t b) {
     return MovingPair{has_mass[a] != 0 ? a : kNone, has_mass[b] != 0 ? b : kNone};
   };

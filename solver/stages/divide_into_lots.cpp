@@ -21,7 +21,7 @@ static bool may_divide(const Tuning& tuning, const StepScratch<D>& scratch) {
   if (tuning.stabilisation != Stabilisation::kSoft) return false;
   if (tuning.joint_solver == JointSolver::kDirect || !scratch.live_joints.empty()) return false;
   if (tuning.contact_block == ContactBlockRows::kIsland) return false;
-  const std::vector<std::uint8_t>& has_mass = scratch.active_bodies.has_mass;
+  const std::vector<std::uint8_t>& has_mass = scratch.kept->active_bodies.has_mass;
   return std::all_of(scratch.awake_bodies.begin(), scratch.awake_bodies.end(),
                      [&](std::uint32_t slot) { return has_mass[slot] != 0; });
 }

@@ -66,26 +66,26 @@ static Bounds<D> bounds_of_half_space(const Body<D>& body, const Shape<D>& shape
 template <int D>
 static void list_statics(const WorldState<D>& state, StepScratch<D>& scratch) {
   scratch.leaves.clear();
-  scratch.unbounded.clear();
+  scratch.kept->unbounded.clear();
   for (std::uint32_t s = 0; s < state.shapes.size(); ++s) {
     const Shape<D>& shape = state.shapes[s];
     if (shape.kind == ShapeKind::kFree) continue;
     const Body<D>& body = state.bodies[shape.body];
-    Bounds<D>& box = scratch.pair_cache.boxes[s];
+    Bounds<D>& box = scratch.kept->pair_cache.boxes[s];
     if (shape.kind == ShapeKind::kHalfSpace) {
-      scratch.unbounded.push_back(s);
+      scratch.kept->unbounded.push_back(s);
       box = bounds_of_half_space(body, shape);
     } else if (body.kind == BodyKind::kStatic) {
       box = bounds_of(shape, Pose<D>{body.position, body.rotation}, 0.0f);
       scratch.leaves.push_back({box, s});
     }
   }
-  scratch.static_tree.build(scratch.leaves);
+  scratch.kept->static_tree.build(scratch.leaves);
 }
 
 template <int D>
 static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
+  PairCache<D>& cache = scratch.kept->pair_cache;
   const std::size_t count = state.shapes.size();
   cache.boxes.resize(count);
   cache.active.assign(count, 0);
@@ -97,7 +97,7 @@ static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
   cache.dormant.clear();
   cache.forgotten.clear();
   cache.fat.clear();
-  scratch.active_bodies.forget_all();
+  scratch.kept->active_bodies.forget_all();
   list_jointed_bodies(state, cache);
   if (!cache.statics_are_known) list_statics(state, scratch);
   cache.statics_are_known = true;
@@ -107,7 +107,7 @@ static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
 /// Of shapes that were changed by a call, or are gone, nothing is known any more.
 template <int D>
 static void forget_changed(const WorldState<D>& state, StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
+  PairCache<D>& cache = scratch.kept->pair_cache;
   const std::size_t count = state.shapes.size();
   cache.boxes.resize(count);
   cache.active.resize(count, 0);
@@ -134,7 +134,7 @@ static ShapePair ordered(std::uint32_t a, std::uint32_t b) {
 template <int D>
 static bool sleepers_look(const StepScratch<D>& scratch) {
   for (const std::uint32_t s : scratch.looking)
-    if (scratch.pair_cache.active[s] == 0) return true;
+    if (scratch.kept->pair_cache.active[s] == 0) return true;
   return false;
 }
 
@@ -143,17 +143,17 @@ static bool sleepers_look(const StepScratch<D>& scratch) {
 template <int D>
 static std::uint32_t look(const WorldState<D>& state, const StepScratch<D>& scratch,
                           std::uint32_t shape, std::vector<ShapePair>& found) {
-  const PairCache<D>& cache = scratch.pair_cache;
+  const PairCache<D>& cache = scratch.kept->pair_cache;
   const Bounds<D>& bounds = cache.fat.box(shape);
-  auto seen = static_cast<std::uint32_t>(scratch.unbounded.size());
+  auto seen = static_cast<std::uint32_t>(scratch.kept->unbounded.size());
   const auto report = [&](std::uint32_t other) {
     if (may_touch(state, scratch, shape, other)) found.push_back(ordered(shape, other));
   };
-  for (const std::uint32_t half_space : scratch.unbounded)
+  for (const std::uint32_t half_space : scratch.kept->unbounded)
     if (overlaps(bounds, cache.boxes[half_space])) report(half_space);
-  scratch.static_tree.query(bounds, [&](int rank) {
+  scratch.kept->static_tree.query(bounds, [&](int rank) {
     ++seen;
-    report(scratch.static_tree.leaf(rank).id);
+    report(scratch.kept->static_tree.leaf(rank).id);
   });
   cache.fat.query(bounds, [&](std::uint32_t other) {
     ++seen;
@@ -166,7 +166,7 @@ static std::uint32_t look(const WorldState<D>& state, const StepScratch<D>& scra
 template <int D>
 static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tally,
                     StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
+  PairCache<D>& cache = scratch.kept->pair_cache;
   const int count = static_cast<int>(scratch.looking.size());
   for (const std::uint32_t shape : scratch.looking) cache.seen_sum -= cache.seen[shape];
   tally.candidates.add(cache.seen_sum);
@@ -194,7 +194,7 @@ static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tal
 /// depends on the state alone.
 template <int D>
 static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
+  PairCache<D>& cache = scratch.kept->pair_cache;
   cache.fat.clear();
   scratch.looking.clear();
   cache.candidates.clear();
@@ -223,7 +223,7 @@ static bool is_below(const ShapePair& one, const ShapePair& other) {
 /// Old candidates and new ones in one order, without the old ones of shapes that looked anew.
 template <int D>
 static void merge_candidates(StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
+  PairCache<D>& cache = scratch.kept->pair_cache;
   const std::vector<ShapePair>& fresh = scratch.fresh_candidates;
   std::vector<ShapePair>& kept = scratch.pairs;
   kept.clear();
@@ -241,7 +241,7 @@ static void merge_candidates(StepScratch<D>& scratch) {
 /// All candidates become one list again, where dormant ones may be so no longer.
 template <int D>
 static void wake_candidates(StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
+  PairCache<D>& cache = scratch.kept->pair_cache;
   if (cache.dormant.empty()) return;
   scratch.sorted_pairs.resize(cache.candidates.size() + cache.dormant.size());
   std::merge(cache.candidates.begin(), cache.candidates.end(), cache.dormant.begin(),
@@ -267,7 +267,7 @@ static void lay_candidates_to_rest(PairCache<D>& cache) {
 template <int D>
 static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
   constexpr int kCandidateGrain = 1024;
-  const PairCache<D>& cache = scratch.pair_cache;
+  const PairCache<D>& cache = scratch.kept->pair_cache;
   scratch.pairs.clear();
   const auto meets = [&](const ShapePair& pair) {
     return overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]);
@@ -290,7 +290,7 @@ static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
 template <int D>
 bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
+  PairCache<D>& cache = scratch.kept->pair_cache;
   scratch.pairs.clear();
   scratch.looking.clear();
   if (!cache.is_known)
@@ -298,7 +298,7 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
   else if (!cache.forgotten.empty())
     forget_changed(state, scratch);
   const bool flips = move_boxes(context, state, workers, scratch);
-  if (flips) scratch.active_contacts.is_known = false;
+  if (flips) scratch.kept->active_contacts.is_known = false;
   const bool sorts_anew = flips || sleepers_look(scratch);
   if (sorts_anew) wake_candidates(scratch);
   if (!scratch.looking.empty()) {

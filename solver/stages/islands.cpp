@@ -30,7 +30,7 @@ static bool drives(const Joint<D>& joint) {
 /// sleepers are not whole.
 template <int D>
 static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
-  const std::vector<std::uint8_t>& active = scratch.active_bodies.active;
+  const std::vector<std::uint8_t>& active = scratch.kept->active_bodies.active;
   std::vector<std::uint32_t>& parent = scratch.islands;
   parent.resize(state.bodies.size());
   scratch.kept_awake.assign(state.bodies.size(), 0);
@@ -53,7 +53,7 @@ static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
 template <int D>
 static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scratch) {
   if (scratch.bodies_asleep == 0) return false;
-  const std::vector<std::uint8_t>& active = scratch.active_bodies.active;
+  const std::vector<std::uint8_t>& active = scratch.kept->active_bodies.active;
   const auto sleeps = [&](std::uint32_t body) {
     return active[body] == 0 && state.bodies[body].inverse_mass > 0.0f;
   };
@@ -125,7 +125,7 @@ static void list_awake(StepScratch<D>& scratch) {
 template <int D>
 static bool wake_by_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
   const std::size_t count = state.bodies.size();
-  const std::vector<std::uint8_t>& active = scratch.active_bodies.active;
+  const std::vector<std::uint8_t>& active = scratch.kept->active_bodies.active;
   take_in_resting(state, scratch);
   find_islands(state, scratch);
   scratch.island_flags.assign(count, 0);
@@ -153,12 +153,12 @@ static bool wake_by_islands(const WorldState<D>& state, StepScratch<D>& scratch)
 template <int D>
 void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch) {
-  const ActiveBodies& active = scratch.active_bodies;
+  const ActiveBodies& active = scratch.kept->active_bodies;
   scratch.awake.assign(active.active.begin(), active.active.end());
   scratch.awake.push_back(0);
   scratch.islands_are_known = false;
   scratch.awake_bodies.assign(active.slots.begin(), active.slots.end());
-  if (!is_written(scratch.trace) && !wakes_somebody(state, scratch)) return;
+  if (!is_written(scratch.kept->trace) && !wakes_somebody(state, scratch)) return;
   if (!wake_by_islands(state, scratch)) return;
   collide_woken(context, state, scratch);
   list_awake(scratch);
@@ -186,7 +186,7 @@ void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldS
   std::vector<std::uint8_t>& restless = scratch.island_flags;
   restless.resize(state.bodies.size());
   bool any_rests = false;
-  scratch.active_bodies.ask_next(scratch.awake_bodies);
+  scratch.kept->active_bodies.ask_next(scratch.awake_bodies);
   for (const std::uint32_t i : scratch.awake_bodies) {
     if (!takes_part(i)) continue;
     const bool rests = rests_long(context, state.bodies[i]);

@@ -141,7 +141,7 @@ static void find_way(const StepContext<D>& context, const WorldState<D>& state, 
 template <int D>
 static void mark_ways(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch) {
-  const PairCache<D>& cache = scratch.pair_cache;
+  const PairCache<D>& cache = scratch.kept->pair_cache;
   scratch.fast_of_shape.assign(state.shapes.size(), 0);
   scratch.ways.resize(state.shapes.size());
   scratch.way_is.assign(state.shapes.size(), WayIs::kUnknown);
@@ -191,7 +191,7 @@ template <int D>
 static bool meets(const StepScratch<D>& scratch, WayIs found, std::uint32_t fast,
                   std::uint32_t other) {
   return scratch.way_is[fast] == found &&
-         overlaps(scratch.pair_cache.boxes[other], scratch.ways[fast]);
+         overlaps(scratch.kept->pair_cache.boxes[other], scratch.ways[fast]);
 }
 
 /// The meetings on the way of a shape that searches, but for those that a lower one finds.
@@ -205,9 +205,10 @@ static void search(const WorldState<D>& state, const StepScratch<D>& scratch, st
     if (may_touch(state, scratch, shape, other))
       found.push_back(shape < other ? ShapePair{shape, other} : ShapePair{other, shape});
   };
-  for (const std::uint32_t half_space : scratch.unbounded) meet(half_space);
-  scratch.static_tree.query(way, [&](int rank) { meet(scratch.static_tree.leaf(rank).id); });
-  scratch.pair_cache.fat.query(way, meet);
+  for (const std::uint32_t half_space : scratch.kept->unbounded) meet(half_space);
+  scratch.kept->static_tree.query(way,
+                                  [&](int rank) { meet(scratch.kept->static_tree.leaf(rank).id); });
+  scratch.kept->pair_cache.fat.query(way, meet);
 }
 
 /// Appends the meetings among these pairs that no search finds.
@@ -245,7 +246,7 @@ void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Wo
   mark_ways(context, state, scratch);
   mark_pushed(context, scratch);
   find_ways_of_pairs(context, state, workers, scratch);
-  const std::vector<ShapePair>& candidates = scratch.pair_cache.candidates;
+  const std::vector<ShapePair>& candidates = scratch.kept->pair_cache.candidates;
   std::vector<std::uint32_t>& searching = scratch.searching;
   const bool many_leave = scratch.leaving.size() * kCandidatesPerSearch > candidates.size();
   if (!many_leave)

@@ -34,7 +34,7 @@ bool may_touch(const WorldState<D>& state, const StepScratch<D>& scratch, std::u
   if (a.body == b.body) return false;
   if (!responds(state.bodies[a.body].kind) && !responds(state.bodies[b.body].kind)) return false;
   if (!filters_meet(a.filter, b.filter)) return false;
-  return !are_jointed(scratch.pair_cache, a.body, b.body);
+  return !are_jointed(scratch.kept->pair_cache, a.body, b.body);
 }
 
 }  // namespace cycloid::solver

@@ -105,8 +105,8 @@ template <int D>
 static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state, Range range,
                        StepScratch<D>& scratch, AskedTally& tally,
                        std::vector<std::uint32_t>& leaving) {
-  PairCache<D>& cache = scratch.pair_cache;
-  ActiveBodies& bodies = scratch.active_bodies;
+  PairCache<D>& cache = scratch.kept->pair_cache;
+  ActiveBodies& bodies = scratch.kept->active_bodies;
   std::uint32_t asleep = 0;
   std::uint32_t asleep_before = 0;
   std::uint32_t changes = 0;
@@ -158,8 +158,8 @@ static void list_active(ActiveBodies& bodies) {
 template <int D>
 bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.pair_cache;
-  ActiveBodies& bodies = scratch.active_bodies;
+  PairCache<D>& cache = scratch.kept->pair_cache;
+  ActiveBodies& bodies = scratch.kept->active_bodies;
   scratch.leaving.clear();
   AskedTally tally;
   list_to_ask(state, bodies);

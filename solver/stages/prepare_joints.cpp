@@ -77,7 +77,7 @@ static void set_row(const StepContext<D>& context, const WorldState<D>& state,
   row.body_a = joint.body_a;
   row.body_b = joint.body_b;
   row.rows_function = joint.kind == JointKind::kUser
-                          ? find_rows_function<D>(scratch.user_rows, joint.user_kind)
+                          ? find_rows_function<D>(scratch.kept->user_rows, joint.user_kind)
                           : &rows_of<D>;
   row.mass_a = scratch.masses[joint.body_a];
   row.mass_b = scratch.masses[joint.body_b];

@@ -192,9 +192,9 @@ static void write_phase(Phase phase, const WorldState<D>& state, const StepScrat
 template <int D>
 void observe(const TracePoint& at, const WorldState<D>& state, const StepScratch<D>& scratch,
              ReadBlocks<D> read) {
-  if (scratch.trace->listener != nullptr)
-    return scratch.trace->listener(scratch.trace->listener_user, at);
-  PhaseWriter writer(at, *scratch.trace);
+  if (scratch.kept->trace->listener != nullptr)
+    return scratch.kept->trace->listener(scratch.kept->trace->listener_user, at);
+  PhaseWriter writer(at, *scratch.kept->trace);
   write_phase(at.phase, state, scratch, read, writer);
   writer.finish();
 }

@@ -16,7 +16,7 @@ using ReadBlocks = void (*)(const StepScratch<D>& scratch, std::vector<ContactWo
 template <int D>
 void read_pins(const StepScratch<D>& scratch, std::vector<JointWork<D>>& joints);
 
-/// Adds to scratch.trace what the phase has left. Reads and changes nothing else.
+/// Adds to scratch.kept->trace what the phase has left. Reads and changes nothing else.
 template <int D>
 void observe(const TracePoint& at, const WorldState<D>& state, const StepScratch<D>& scratch,
              ReadBlocks<D> read);
@@ -30,7 +30,7 @@ struct Tracer {
   std::uint32_t substep = kNone;
 
   void operator()(Phase phase, std::uint32_t sweep = kNone) const {
-    if (scratch.trace != nullptr) [[unlikely]]
+    if (scratch.kept->trace != nullptr) [[unlikely]]
       observe({phase, substep, sweep}, state, scratch, read);
   }
 };
