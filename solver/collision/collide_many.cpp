@@ -43,19 +43,33 @@ struct Waiting {
   int count = 0;
 };
 
+/// What is done to pairs in lanes: two outlines, or an outline and a ball.
+struct TwoOutlines {
+  template <int W, class... Arguments>
+  static void collide(const Arguments&... arguments) {
+    FewCornered<W>::collide(arguments...);
+  }
+};
+struct OutlineAndBall {
+  template <int W, class... Arguments>
+  static void collide(const Arguments&... arguments) {
+    FewCornered<W>::collide_ball(arguments...);
+  }
+};
+
 /// As many pairs as there are lanes, or the `used` last ones and then the last one again.
-template <int W>
+template <class Of, int W>
 static void collide_block(const Collider<2>& collider, const PlacedPair<2>* pairs,
                           const std::uint32_t* waiting, int used, Manifold<2>* manifolds) {
   LaneIndices<W> in_lane;
   for (int lane = 0; lane < kLaneCount<W>; ++lane)
     in_lane[lane] = waiting[lane < used ? lane : used - 1];
-  FewCornered<W>::collide(collider.shapes, pairs, in_lane, manifolds);
+  Of::template collide<W>(collider.shapes, pairs, in_lane, manifolds);
 }
 
 /// The pairs that wait, W at a time. The last ones, where they would leave three quarters of the
 /// lanes empty, cost less by themselves.
-template <int W>
+template <class Of, int W>
 static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* pairs,
                              const Waiting& waiting, OneByOne& one_by_one, Manifold<2>* manifolds) {
   int begin = 0;
@@ -65,12 +79,12 @@ static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* p
     // What would leave half of the sixteen lanes empty takes as long in eight.
     if (W == kAvx512Lanes && left <= kLaneCount<kAvx2Lanes>) {
       if (4 * left <= kLaneCount<kAvx2Lanes>) break;
-      collide_block<kAvx2Lanes>(collider, pairs, next, left, manifolds);
+      collide_block<Of, kAvx2Lanes>(collider, pairs, next, left, manifolds);
       return;
     }
     const int used = left < kLaneCount<W> ? left : kLaneCount<W>;
     if (4 * used <= kLaneCount<W>) break;
-    collide_block<W>(collider, pairs, next, used, manifolds);
+    collide_block<Of, W>(collider, pairs, next, used, manifolds);
     begin += used;
   }
   for (int i = begin; i < waiting.count; ++i)
@@ -80,17 +94,26 @@ static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* p
 template <>
 void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>* manifolds) const {
   OneByOne one_by_one;
-  Waiting waiting;
+  Waiting outlines;
+  Waiting balls;
   for (int i = 0; i < count; ++i) {
-    const bool waits = lanes != 1 && has_few_corners(shapes[pairs[i].shape_a]) &&
-                       has_few_corners(shapes[pairs[i].shape_b]);
-    if (waits)
-      waiting.pairs[waiting.count++] = static_cast<std::uint32_t>(i);
+    const Shape<2>& a = shapes[pairs[i].shape_a];
+    const Shape<2>& b = shapes[pairs[i].shape_b];
+    const bool few_a = has_few_corners(a);
+    const bool few_b = has_few_corners(b);
+    const bool with_ball =
+        (few_a && b.kind == ShapeKind::kBall) || (few_b && a.kind == ShapeKind::kBall);
+    if (lanes != 1 && few_a && few_b)
+      outlines.pairs[outlines.count++] = static_cast<std::uint32_t>(i);
+    else if (lanes != 1 && with_ball)
+      balls.pairs[balls.count++] = static_cast<std::uint32_t>(i);
     else
       manifolds[i] = one_by_one(*this, pairs[i]);
   }
-  at_width(lanes,
-           [&]<int W>() { collide_in_lanes<W>(*this, pairs, waiting, one_by_one, manifolds); });
+  at_width(lanes, [&]<int W>() {
+    collide_in_lanes<TwoOutlines, W>(*this, pairs, outlines, one_by_one, manifolds);
+    collide_in_lanes<OutlineAndBall, W>(*this, pairs, balls, one_by_one, manifolds);
+  });
 }
 
 template <>

@@ -1,4 +1,4 @@
-#include "solver/collision/few_cornered_lanes.hpp"
+#include "solver/collision/cornered_ball_lanes.hpp"
 
 namespace cycloid::solver {
 

@@ -15,6 +15,9 @@ struct FewCornered {
   /// @pre every shape is a capsule, or a polygon with a `vertex_count` of 4 at most.
   static void collide(const Shape<2>* shapes, const PlacedPair<2>* pairs,
                       const LaneIndices<W>& pair_in_lane, Manifold<2>* manifolds);
+  /// The same of such an outline and a ball, in either order: the formulas of hull_against_ball.
+  static void collide_ball(const Shape<2>* shapes, const PlacedPair<2>* pairs,
+                           const LaneIndices<W>& pair_in_lane, Manifold<2>* manifolds);
 };
 
 }  // namespace cycloid::solver

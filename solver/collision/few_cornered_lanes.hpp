@@ -315,28 +315,49 @@ template <int W>
     scatter_floats<W>(rows[i], kAllLanes<W>, 3 + 4 * i, pair_in_lane, manifolds);
 }
 
+/// Pairs as they are placed, a pair in each lane.
+template <int W>
+struct PlacedLanes {
+  Rotation<2, Lanes<W>> rotation_a;
+  Rotation<2, Lanes<W>> rotation_b;
+  Vec<2, Lanes<W>> a_to_b;
+  Lanes<W> margin;
+  LaneIndices<W> shape_a;
+  LaneIndices<W> shape_b;
+};
+
+template <int W>
+[[gnu::always_inline]] inline PlacedLanes<W> place_in_lanes(const PlacedPair<2>* pairs,
+                                                            const LaneIndices<W>& pair_in_lane) {
+  using L = Lanes<W>;
+  static_assert(offsetof(PlacedPair<2>, pose_b) == sizeof(Quad));
+  static_assert(sizeof(PlacedPair<2>) == offsetof(PlacedPair<2>, margin) + sizeof(float));
+  L pose_a[4];
+  L pose_b[4];
+  L rest[4];
+  gather_columns<W>(pairs, pair_in_lane, 0, pose_a);
+  gather_columns<W>(pairs, pair_in_lane, 1, pose_b);
+  gather_floats<W>(pairs, pair_in_lane, sizeof(PlacedPair<2>) / sizeof(float) - 4, rest);
+  PlacedLanes<W> placed;
+  placed.rotation_a = {{pose_a[2], pose_a[3]}};
+  placed.rotation_b = {{pose_b[2], pose_b[3]}};
+  placed.a_to_b = {{pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]}};
+  placed.margin = rest[3];
+  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+    placed.shape_a[lane] = pairs[pair_in_lane[lane]].shape_a;
+    placed.shape_b[lane] = pairs[pair_in_lane[lane]].shape_b;
+  }
+  return placed;
+}
+
 template <int W>
 void FewCornered<W>::collide(const Shape<2>* shapes, const PlacedPair<2>* pairs,
                              const LaneIndices<W>& pair_in_lane, Manifold<2>* manifolds) {
   using L = Lanes<W>;
-  static_assert(offsetof(PlacedPair<2>, pose_b) == sizeof(Quad));
-  L pose_a[4];
-  L pose_b[4];
-  gather_columns<W>(pairs, pair_in_lane, 0, pose_a);
-  gather_columns<W>(pairs, pair_in_lane, 1, pose_b);
-  static_assert(sizeof(PlacedPair<2>) == offsetof(PlacedPair<2>, margin) + sizeof(float));
-  L rest[4];
-  gather_floats<W>(pairs, pair_in_lane, sizeof(PlacedPair<2>) / sizeof(float) - 4, rest);
-  const L margin = rest[3];
-  LaneIndices<W> shape_a;
-  LaneIndices<W> shape_b;
-  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
-    shape_a[lane] = pairs[pair_in_lane[lane]].shape_a;
-    shape_b[lane] = pairs[pair_in_lane[lane]].shape_b;
-  }
-  const Vec<2, L> a_to_b = {{pose_b[0] - pose_a[0], pose_b[1] - pose_a[1]}};
-  const Corners<W> a = corners_of<W>(shapes, shape_a, {{pose_a[2], pose_a[3]}}, Vec<2, L>::zero());
-  const Corners<W> b = corners_of<W>(shapes, shape_b, {{pose_b[2], pose_b[3]}}, a_to_b);
+  const PlacedLanes<W> placed = place_in_lanes<W>(pairs, pair_in_lane);
+  const L margin = placed.margin;
+  const Corners<W> a = corners_of<W>(shapes, placed.shape_a, placed.rotation_a, Vec<2, L>::zero());
+  const Corners<W> b = corners_of<W>(shapes, placed.shape_b, placed.rotation_b, placed.a_to_b);
 
   const DeepestEdge<W> of_a = deepest_edge(a, b);
   const DeepestEdge<W> of_b = deepest_edge(b, a);

@@ -19,13 +19,13 @@ static float drawn(std::mt19937& random, float from, float to) {
   return from + 0.25f * static_cast<float>(random() % static_cast<unsigned>(quarters + 1));
 }
 
-/// A box, a lozenge, a trapezium, a triangle, a polygon of five corners or a capsule; some are
-/// rounded.
+/// A box, a lozenge, a trapezium, a triangle, a polygon of five corners, a capsule or a ball; some
+/// are rounded.
 static ShapeDef<2> drawn_shape(std::mt19937& random) {
   const float x = drawn(random, 0.25f, 1.5f);
   const float y = drawn(random, 0.25f, 1.5f);
   ShapeDef<2> shape = box(x, y);
-  switch (random() % 9) {
+  switch (random() % 12) {
     case 0:
       shape.points = {{{-x, 0.0f}}, {{0.0f, -y}}, {{x, 0.0f}}, {{0.0f, y}}};
       break;
@@ -42,6 +42,14 @@ static ShapeDef<2> drawn_shape(std::mt19937& random) {
     case 5:
       shape = capsule(x, y);
       break;
+    case 6:
+    case 7:
+      shape = ball<2>(0.5f * x);
+      break;
+    case 8:
+      shape = ball<2>(0.5f * x);
+      shape.points = {{{drawn(random, -0.5f, 0.5f), 0.0f}}};
+      return shape;
     default:
       break;
   }
@@ -89,6 +97,11 @@ static Crowd crowd(std::mt19937& random, int count) {
   return made;
 }
 
+static bool one_is_a_ball(const Crowd& crowd, const PlacedPair<2>& pair) {
+  return (crowd.shapes[pair.shape_a].kind == ShapeKind::kBall) !=
+         (crowd.shapes[pair.shape_b].kind == ShapeKind::kBall);
+}
+
 static bool both_are_capsules(const Crowd& crowd, const PlacedPair<2>& pair) {
   return crowd.shapes[pair.shape_a].kind == ShapeKind::kCapsule &&
          crowd.shapes[pair.shape_b].kind == ShapeKind::kCapsule;
@@ -116,6 +129,7 @@ TEST(FewCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
   std::set<std::uint32_t> counts;
   std::set<std::uint32_t> features;
   std::set<std::uint32_t> of_capsules;
+  std::set<std::uint32_t> of_balls;
   for (int round = 0; round < 2000; ++round) {
     const int count = 1 + static_cast<int>(random() % kPairGrain);
     const Crowd made = crowd(random, count);
@@ -125,7 +139,9 @@ TEST(FewCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
                                  pair.pose_b, pair.margin, {}));
       counts.insert(expected.back().point_count);
       for (std::uint32_t i = 0; i < expected.back().point_count; ++i)
-        (both_are_capsules(made, pair) ? of_capsules : features)
+        (both_are_capsules(made, pair) ? of_capsules
+         : one_is_a_ball(made, pair)   ? of_balls
+                                       : features)
             .insert(expected.back().points[i].feature);
     }
     for (const int lanes : widths()) {
@@ -140,6 +156,10 @@ TEST(FewCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
     }
   }
   EXPECT_EQ(counts, (std::set<std::uint32_t>{0, 1, 2}));
+  for (std::uint32_t corner = 0; corner < 4; ++corner) {
+    EXPECT_TRUE(of_balls.contains(corner)) << corner;
+    EXPECT_TRUE(of_balls.contains(16 + corner)) << corner;
+  }
   for (std::uint32_t edge_or_corner = 0; edge_or_corner < 16; ++edge_or_corner) {
     const std::uint32_t pair = (edge_or_corner / 4) << 4 | (edge_or_corner % 4) << 1;
     for (const std::uint32_t feature : {pair, pair | 1u, pair | 0x400u})
