@@ -24,9 +24,9 @@ struct Coloring {
 /// More colours than this would leave each with too little to share among lanes and threads.
 inline constexpr int kColorsMax = 28;
 
-/// The colour of each constraint, and what it joins.
+/// The colour of each constraint.
 struct Colors {
-  std::vector<MovingPair> pairs;
+  std::vector<MovingPair> pairs;   ///< What it joins; of contacts alone.
   std::vector<int> of;             ///< kColorsMax: none.
   int sizes[kColorsMax + 1] = {};  ///< By colour.
 };

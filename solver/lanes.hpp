@@ -68,7 +68,7 @@ struct alignas(4 * kLaneCount<W>) Lanes {
 
   Lanes() = default;
   explicit Lanes(Raw r) : raw(r) {}
-  Lanes(float x) : raw(x - Raw{}) {}  // NOLINT: a scalar constant is the same in every lane.
+  Lanes(float x) : raw(x - Raw{}) {}  // NOLINT: the same in every lane; 0 + x would lose -0.
 
   static Lanes load(const float* from) {
     Lanes lanes;

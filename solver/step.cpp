@@ -101,7 +101,8 @@ template <int D, int W>
 static void solve_lots(float tick_h, const StepContext<D>& context, const WorldState<D>& state,
                        const Tracer<D>& traced, Workers& workers, StepScratch<D>& scratch) {
   std::vector<Lot>& lots = scratch.lots.all;
-  if (lots.empty() || scratch.islands_solved.acts || scratch.kept->trace != nullptr) {
+  if (scratch.islands_solved.acts || scratch.kept->trace != nullptr) lots.clear();
+  if (lots.empty()) {
     const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
     Lot whole{{0, static_cast<int>(scratch.moving_bodies.size())},
               {0, static_cast<int>(contacts.colors.size())},

@@ -4,6 +4,8 @@
 
 namespace cycloid::solver {
 
+/// The text of FewCornered::collide_ball, as few_cornered_lanes.hpp is that of the rest.
+
 /// A ball and what of an outline is closest to it, an edge or a corner, with the one point that
 /// they have.
 template <int W>

@@ -31,10 +31,8 @@ inline Four four_vertices(const Hull& hull, std::uint32_t first) {
 inline Four four_normals(const Hull& hull, std::uint32_t first) {
   return {{Lanes<4>::load(&hull.normal_x[first]), Lanes<4>::load(&hull.normal_y[first])}};
 }
-/// Not by Lanes(float), which loses the sign of a zero.
 inline Four in_each_lane(const Vec<2>& r) {
-  return {{Lanes<4>(Lanes<4>::Raw{r[0], r[0], r[0], r[0]}),
-           Lanes<4>(Lanes<4>::Raw{r[1], r[1], r[1], r[1]})}};
+  return {{Lanes<4>(r[0]), Lanes<4>(r[1])}};
 }
 template <int kLane>
 Lanes<4> each_is(Lanes<4> a) {

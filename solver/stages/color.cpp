@@ -38,11 +38,10 @@ template <class PairOf>
 static void assign_colors(std::size_t count, PairOf&& pair_of, std::vector<std::uint32_t>& used,
                           Colors& colors) {
   colors.of.resize(count);
-  colors.pairs.resize(count);
   std::fill(std::begin(colors.sizes), std::end(colors.sizes), 0);
   use_no_color(count, pair_of, used);
   for (std::size_t i = 0; i < count; ++i) {
-    const MovingPair pair = colors.pairs[i] = pair_of(i);
+    const MovingPair pair = pair_of(i);
     const std::uint32_t taken =
         (pair.a != kNone ? used[pair.a] : 0) | (pair.b != kNone ? used[pair.b] : 0);
     int color = std::countr_one(taken);
@@ -110,8 +109,9 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.colors);
   sort_by_color(scratch.colors, scratch.joint_coloring);
   name_slots(joints, scratch.joint_coloring);
+  scratch.colors.pairs.resize(scratch.live.size());
   const auto pair_of_contact = [&](std::size_t i) {
-    return pair_of(scratch.live[i].body_a, scratch.live[i].body_b);
+    return scratch.colors.pairs[i] = pair_of(scratch.live[i].body_a, scratch.live[i].body_b);
   };
   assign_colors(scratch.live.size(), pair_of_contact, scratch.used_colors, scratch.colors);
 }

@@ -86,6 +86,7 @@ TEST(StepAllocations, AreNoneInSmallRoomsThatShareTheirMemory) {
       ASSERT_TRUE(simulation.ok()) << name;
       simulation.value().use_step_memory(memories);
       ASSERT_TRUE(simulation.value().set_lanes(lanes).ok());
+      simulation.value().set_lot_contacts(static_cast<std::uint32_t>(lanes));
       scenes::Simulation::Saved start;
       simulation.value().save(start);
       const auto script = script_of(*loaded.scene, simulation.value());

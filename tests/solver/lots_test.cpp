@@ -10,7 +10,8 @@ static ShapeDef<3> brick(World<3>&) {
   return box_def({{0.5f, 0.5f, 0.5f}});
 }
 
-/// Small pyramids in a row, 9 or more contacts each, and a ball that falls between two of them.
+/// Small pyramids in a row, 12 contacts each or nearly so, and a ball that falls between two of
+/// them.
 template <int D>
 static World<D> row_of_pyramids() {
   constexpr int kPyramids = 12;
