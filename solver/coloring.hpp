@@ -34,9 +34,12 @@ struct Colors {
 /// Whole islands that are solved from the first substep to the last, before or beside those of
 /// other lots: no two lots share a body that moves. A tick that is not divided is one lot.
 struct Lot {
-  Range bodies;             ///< Places in moving_bodies.
-  Range colors;             ///< Of its contacts, among those of all.
-  Range overflow;           ///< Blocks in no colour; none where the tick is divided.
+  Range bodies;           ///< Places in moving_bodies.
+  Range colors;           ///< Of its contacts, among those of all.
+  Range overflow;         ///< Blocks in no colour; none where the tick is divided.
+  int blocks_before = 0;  ///< Blocks of all lots that do not stand before its own in memory.
+  bool follows = false;   ///< Some block of its contacts does.
+  bool bounces = false;
   std::uint32_t poses = 0;  ///< Grows whenever its bodies have moved in this tick.
 };
 

@@ -1,4 +1,3 @@
-#include "solver/constraints/contact_rolling.hpp"
 #include "solver/events.hpp"
 #include "solver/floating_point_mode.hpp"
 #include "solver/lane_widths.hpp"
@@ -85,6 +84,7 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
 }
 
 /// All substeps, then impulses into the contacts. @param tick_h  s, of the substeps asked for.
+/// @pre prepare_contacts.
 template <int D, int W>
 static void solve_lot(float tick_h, const StepContext<D>& context, const WorldState<D>& state,
                       const Tracer<D>& traced, Lot& lot, Workers& workers,
@@ -95,25 +95,22 @@ static void solve_lot(float tick_h, const StepContext<D>& context, const WorldSt
   store_impulses<D, W>(lot, workers, scratch);
 }
 
-/// Lot after lot, each by one thread, where the tick is divided; at once where it is not, where
-/// islands are solved at once, and where somebody looks on, to whom each phase is that of all.
+/// Lot after lot, each by one thread, in that thread's part of the memory of blocks.
 template <int D, int W>
-static void solve_lots(float tick_h, const StepContext<D>& context, const WorldState<D>& state,
+static void solve_lots(const StepContext<D>& context, const WorldState<D>& state,
                        const Tracer<D>& traced, Workers& workers, StepScratch<D>& scratch) {
   std::vector<Lot>& lots = scratch.lots.all;
-  if (scratch.islands_solved.acts || scratch.kept->trace != nullptr) lots.clear();
-  if (lots.empty()) {
-    const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-    Lot whole{{0, static_cast<int>(scratch.moving_bodies.size())},
-              {0, static_cast<int>(contacts.colors.size())},
-              contacts.overflow};
-    return solve_lot<D, W>(tick_h, context, state, traced, whole, workers, scratch);
-  }
+  Seats seats;
   workers.parallel_for(static_cast<int>(lots.size()), 1, [&](Range range) {
     Workers alone(1);
-    for (int i = range.begin; i < range.end; ++i)
-      solve_lot<D, W>(tick_h, context, state, traced, lots[static_cast<std::size_t>(i)], alone,
-                      scratch);
+    const int seat = seats.take();
+    for (int i = range.begin; i < range.end; ++i) {
+      Lot& lot = lots[static_cast<std::size_t>(i)];
+      seat_lot<D, W>(seat, workers, scratch, lot);
+      prepare_contacts<D, W>(context, state, lot, alone, scratch);
+      solve_lot<D, W>(context.h, context, state, traced, lot, alone, scratch);
+    }
+    seats.give_back(seat);
   });
 }
 
@@ -122,13 +119,21 @@ template <int D, int W>
 static void solve_contacts(const StepContext<D>& context, const WorldState<D>& state,
                            Workers& workers, StepScratch<D>& scratch) {
   const Tracer<D> traced{state, scratch, &read_blocks<D, W>};
-  prepare_contacts<D, W>(context, state, workers, scratch);
+  // To who looks on, each phase is that of all.
+  if (scratch.kept->trace != nullptr) scratch.lots.all.clear();
+  join_loaded_lots<D, W>(context, state, workers, scratch);
+  Lot whole = lay_out_contacts<D, W>(workers, scratch);
+  const bool divided = !scratch.lots.all.empty();
+  if (!divided) prepare_contacts<D, W>(context, state, whole, workers, scratch);
   prepare_islands<D, W>(context, scratch);
   const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
   scratch.substeps = paced.tuning.substeps;
   prepare_pins(paced, state, scratch);
   traced(Phase::kPrepare);
-  solve_lots<D, W>(context.h, paced, state, traced, workers, scratch);
+  if (divided)
+    solve_lots<D, W>(paced, state, traced, workers, scratch);
+  else
+    solve_lot<D, W>(context.h, paced, state, traced, whole, workers, scratch);
   traced(Phase::kStore);
   stop_fast_bodies(context, state, workers, scratch);
   traced(Phase::kStop);
@@ -164,69 +169,6 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   prepare_bodies(context, state, workers, scratch);
   prepare_joints(context, state, scratch);
   solve_in_lanes(context, state, workers, scratch);
-}
-
-/// Rows of a contact between two materials.
-struct ContactRows {
-  std::uint32_t per_point;
-  std::uint32_t more;
-};
-template <int D>
-static ContactRows rows_between(const Material& a, const Material& b) {
-  const bool rubs = a.friction * b.friction > 0.0f;
-  const bool rolls =
-      max(a.rolling_resistance, b.rolling_resistance) > 0.0f || twist_resistance<D>(a, b) > 0.0f;
-  return {1 + (rubs ? Dim<D>::kTangents : 0u), rolls ? Dim<D>::kSpin : 0u};
-}
-
-/// What the sweeps solved: rows that cannot act were not built, and are not counted.
-template <int D>
-static void count_rows(const WorldState<D>& state, const StepScratch<D>& scratch,
-                       Statistics& statistics) {
-  // Most worlds have one material; then it is asked once.
-  const bool one_material = state.materials.size() == 1;
-  ContactRows kind{};
-  if (one_material) kind = rows_between<D>(state.materials[0], state.materials[0]);
-  for (const LiveContact<D>& live : scratch.live) {
-    if (!one_material)
-      kind = rows_between<D>(state.materials[live.material_a], state.materials[live.material_b]);
-    const std::uint32_t rows = live.manifold.point_count * kind.per_point + kind.more;
-    statistics.rows_per_sweep += rows;
-    if (can_turn(scratch.masses[live.body_a]) || can_turn(scratch.masses[live.body_b]))
-      statistics.turning_rows_per_sweep += rows;
-  }
-  for (const JointRow<D>& row : scratch.joint_rows) {
-    const int rows = (row.solved_directly ? 0 : row.rows.count) + (row.spring_enabled ? 1 : 0) +
-                     (row.motor_enabled ? 1 : 0) + (row.limit_enabled ? 2 : 0) +
-                     (has_cone(row) ? 1 : 0);
-    statistics.rows_per_sweep += static_cast<std::uint32_t>(rows);
-    if (row.solved_directly) statistics.direct_rows += static_cast<std::uint32_t>(row.rows.count);
-  }
-  const Tuning& tuning = state.header.tuning;
-  statistics.substeps = scratch.substeps;
-  statistics.rows = std::uint64_t{statistics.rows_per_sweep} * scratch.substeps *
-                    (tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps);
-  // A product of blocks has as many terms as a row and its impulse in the plane, eight times as
-  // many in space: else islands at once would look cheaper than they are.
-  constexpr std::uint64_t kTimesPlanar = Dim<D>::kFreedoms / Dim<2>::kFreedoms;
-  if (solves_islands(tuning))
-    statistics.rows +=
-        scratch.islands_solved.work.products * kTimesPlanar * kTimesPlanar * kTimesPlanar;
-}
-
-template <int D>
-static Statistics statistics_of(const WorldState<D>& state, const StepScratch<D>& scratch) {
-  Statistics statistics;
-  statistics.bodies = static_cast<std::uint32_t>(state.bodies.size() - state.free_bodies.size());
-  statistics.pairs = static_cast<std::uint32_t>(scratch.pairs.size());
-  statistics.contacts = static_cast<std::uint32_t>(state.contacts.size());
-  for (int color = 0; color < kColorsMax; ++color)
-    if (scratch.colors.sizes[color] > 0) ++statistics.colors;
-  count_rows(state, scratch, statistics);
-  if (!scratch.lots.all.empty())
-    statistics.lots = static_cast<std::uint32_t>(scratch.lots.all.size());
-  statistics.asleep = scratch.bodies_asleep;
-  return statistics;
 }
 
 /// Particles move last, among bodies where the tick has left them. False where one leaves the
@@ -325,7 +267,7 @@ Error World<D>::step_in_lanes() {
     return {Code::kFaulted, "particle"};
   }
   if (!state_.particles.empty()) traced(Phase::kParticles);
-  statistics_ = statistics_of(state_, scratch);
+  statistics_ = count_work(state_, scratch);
   return {};
 }
 

@@ -32,8 +32,6 @@ template <int D, int W>
 struct ContactBlocks {
   std::vector<ContactBlock<D, W>> blocks;
   std::vector<ContactExtra<D, W>> extras;  ///< By block; of use only where the block has one.
-  bool follows = false;                    ///< Some block does.
-  bool bounces = false;
   std::vector<Range> colors;
   Range overflow;
   std::vector<Range> members;  ///< By block: its contacts, in the order of the colouring.

@@ -2,6 +2,7 @@
 
 #include <array>
 #include <atomic>
+#include <bit>
 #include <cstdint>
 #include <memory>
 #include <utility>
@@ -40,6 +41,23 @@ class OwnerCount {
 
  private:
   std::atomic<std::uint32_t> owners_{1};
+};
+
+/// Numbers from 0 on, below how many threads there are, each lent to one at a time: which part of a
+/// memory is whose. Who has which cannot be seen, as long as nothing is read there that its
+/// borrower has not written.
+class Seats {
+ public:
+  int take() {
+    std::uint64_t free = free_.load(std::memory_order_relaxed);
+    while (!free_.compare_exchange_weak(free, free & (free - 1), std::memory_order_acquire)) {
+    }
+    return std::countr_zero(free);
+  }
+  void give_back(int seat) { free_.fetch_or(std::uint64_t{1} << seat, std::memory_order_release); }
+
+ private:
+  std::atomic<std::uint64_t> free_{~std::uint64_t{0}};  ///< As many as there may be workers.
 };
 
 /// A number that is made of what does not change, once. Two threads that ask for it at the same

@@ -39,6 +39,9 @@ struct ContactKernels {
   /// @pre 0 < count <= kLaneCount<W>.
   static void fill(const ContactInputs<D>& in, const int* places, int count,
                    ContactBlock<D, W>& block);
+  /// Whether any of contacts [begin, end) of `in.live` carries more than springs hold within the
+  /// bounds: of what complete() finds in blocks.
+  static bool any_loaded(const LoadBounds& bounds, const ContactInputs<D>& in, int begin, int end);
   /// What follows from the numbers of each lane once they are there: tangents, effective masses,
   /// shares, the coefficient of friction, whose square stands in its place, and which lanes carry
   /// more than springs hold within the bounds (ContactBlock::loaded).

@@ -5,17 +5,56 @@
 
 namespace cycloid::solver {
 
-/// Sets ContactBlock::loaded: by the impulses of the tick before, which all points share.
-template <int D, int W>
-[[gnu::always_inline]] inline void find_load(const LoadBounds& bounds, ContactBlock<D, W>& block) {
+/// Lanes whose soft contact would give way by more than the bound.
+/// @param load  The impulses of all its points in the tick before, N s.
+template <int W>
+[[gnu::always_inline]] inline LaneBits loaded_lanes(const LoadBounds& bounds,
+                                                    const Lanes<W>& inverse_mass_a,
+                                                    const Lanes<W>& inverse_mass_b,
+                                                    const Lanes<W>& load) {
   using L = Lanes<W>;
   const L one(bounds.yield_static);
-  const L yield = select(block.mass_a.inverse_mass > L(0.0f),
-                         select(block.mass_b.inverse_mass > L(0.0f), L(bounds.yield), one), one);
-  L load(0.0f);
+  const L yield =
+      select(inverse_mass_a > L(0.0f), select(inverse_mass_b > L(0.0f), L(bounds.yield), one), one);
+  const L way = load * (inverse_mass_a + inverse_mass_b) * yield;
+  return lanes_above_zero(way - L(bounds.most));
+}
+
+/// Sets ContactBlock::loaded.
+template <int D, int W>
+[[gnu::always_inline]] inline void find_load(const LoadBounds& bounds, ContactBlock<D, W>& block) {
+  Lanes<W> load(0.0f);
   for (std::uint32_t p = 0; p < block.point_count; ++p) load += block.points[p].normal_impulse;
-  const L way = load * (block.mass_a.inverse_mass + block.mass_b.inverse_mass) * yield;
-  block.loaded = lanes_above_zero(way - L(bounds.most));
+  block.loaded = loaded_lanes(bounds, block.mass_a.inverse_mass, block.mass_b.inverse_mass, load);
+}
+
+/// The same of contacts that are in no block yet, from `begin` on, as many as there are lanes:
+/// whether any of them is loaded. Points that a contact does not have carry nothing.
+template <int D, int W>
+[[gnu::always_inline]] inline bool any_loaded_from(const LoadBounds& bounds,
+                                                   const ContactInputs<D>& in, int begin, int end) {
+  constexpr int kImpulses = sizeof(ContactPoint<D>) / sizeof(float);
+  LaneIndices<W> body_a;
+  LaneIndices<W> body_b;
+  LaneIndices<W> contact;
+  for (int lane = 0; lane < kLaneCount<W>; ++lane) {
+    const LiveContact<D>& live = in.live[begin + lane < end ? begin + lane : end - 1];
+    body_a[lane] = live.body_a;
+    body_b[lane] = live.body_b;
+    contact[lane] = live.contact;
+  }
+  Lanes<W> load(0.0f);
+  for (int p = 0; p < Dim<D>::kManifoldPoints; ++p) {
+    Lanes<W> impulses[4];
+    gather_floats<W>(in.contacts, contact,
+                     float_at(in.contacts[0], in.contacts[0].points) + p * kImpulses, impulses);
+    load += Lanes<W>(in.warm_starting) * impulses[1];
+  }
+  Lanes<W> mass_a[4];
+  Lanes<W> mass_b[4];
+  gather_columns<W>(in.masses, body_a, 0, mass_a);
+  gather_columns<W>(in.masses, body_b, 0, mass_b);
+  return loaded_lanes(bounds, mass_a[0], mass_b[0], load) != 0;
 }
 
 /// What a point misses of what it holds, by the natural map, m/s: 0 where a lane has no such point.

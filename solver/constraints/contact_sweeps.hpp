@@ -68,6 +68,15 @@ void ContactKernels<D, W>::fill(const ContactInputs<D>& in, const int* places, i
 }
 
 template <int D, int W>
+bool ContactKernels<D, W>::any_loaded(const LoadBounds& bounds, const ContactInputs<D>& in,
+                                      int begin, int end) {
+  bool any = false;
+  for (int i = begin; i < end && !any; i += kLaneCount<W>)
+    any = any_loaded_from<D, W>(bounds, in, i, end);
+  return any;
+}
+
+template <int D, int W>
 void ContactKernels<D, W>::complete(const LoadBounds& bounds, const BlockRange<D, W>& range) {
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
     share_points(*block);

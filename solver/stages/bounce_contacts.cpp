@@ -14,8 +14,8 @@ static constexpr int kBounceSweeps = 4;
 template <int D, int W>
 void bounce_contacts(const StepContext<D>& context, const Lot& lot, Workers& workers,
                      StepScratch<D>& scratch) {
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-  if (!contacts.bounces) return;
+  if (!lot.bounces) return;
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const BlockRange<D, W> all = block_range<D, W>(lot, scratch, contacts.blocks_of(lot));
   ContactKernels<D, W>::forget_bounces(all);
   for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {

@@ -29,11 +29,10 @@ static void follow_inertia(const StepScratch<D>& scratch, ContactBlock<D, W>& bl
 template <int D, int W>
 void evaluate_contacts(Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   ++lot.poses;
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   constexpr bool kInertiaTurns = Dim<D>::kSpin > 1;
-  if (!contacts.follows && !kInertiaTurns) return;
+  if (!lot.follows && !kInertiaTurns) return;
   for_all_blocks<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
-    if (contacts.follows) ContactKernels<D, W>::follow(blocks);
+    if (lot.follows) ContactKernels<D, W>::follow(blocks);
     if (!kInertiaTurns) return;
     for (ContactBlock<D, W>* block = blocks.begin; block != blocks.end; ++block)
       if (block->turns) follow_inertia(scratch, *block);

@@ -41,9 +41,31 @@ LoadBounds load_bounds(const StepContext<D>& context) {
   return {true, yield_of(context.contact), yield_of(context.contact_static), kContactYield};
 }
 
+/// Undoes the division into lots where contacts are loaded: whether an island is solved at once is
+/// asked of all blocks, and those of lots do not stand in memory together.
+///
+/// Reads live contacts, their impulses and masses; writes the lots. Any split into ranges finds the
+/// same.
+template <int D, int W>
+void join_loaded_lots(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                      StepScratch<D>& scratch) {
+  constexpr int kGrain = 1024;
+  const LoadBounds bounds = load_bounds(context);
+  if (scratch.lots.all.empty() || !bounds.asked) return;
+  const ContactInputs<D> inputs = contact_inputs(context, state, scratch);
+  Tally loaded;
+  workers.parallel_for(static_cast<int>(scratch.live.size()), kGrain, [&](Range range) {
+    if (!loaded.is_over() &&
+        ContactKernels<D, W>::any_loaded(bounds, inputs, range.begin, range.end))
+      loaded.add(1);
+  });
+  if (loaded.is_over()) scratch.lots.all.clear();
+}
+
 /// Looks for what soft contacts and joints cannot hold up: with them overlap is load over frequency
 /// squared, whatever the number of substeps. The load is that of the last tick, which the state
-/// has; of joints between unequal masses it is not waited for.
+/// has; of joints between unequal masses it is not waited for. What is divided into lots was looked
+/// at: join_loaded_lots.
 ///
 /// Reads masses, the loaded lanes of blocks and the impulses of joint rows; writes the loaded
 /// slots, one of each such pair, and whether islands are solved at all in this tick. Serial; which
@@ -53,7 +75,7 @@ void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   solver.loaded.clear();
   solver.acts = context.tuning.contact_block == ContactBlockRows::kIsland;
-  if (solver.acts || !solves_islands(context.tuning)) return;
+  if (solver.acts || !solves_islands(context.tuning) || !scratch.lots.all.empty()) return;
   const auto add = [&](std::uint32_t a, std::uint32_t b) {
     solver.loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
   };
@@ -71,6 +93,7 @@ template LoadBounds load_bounds(const StepContext<3>&);
 
 template <int D, int W>
 struct InstantiateLoaded {
+  static constexpr auto kJoin = &join_loaded_lots<D, W>;
   static constexpr auto kFind = &find_loaded<D, W>;
 };
 template struct InstantiateLoaded<2, 1>;

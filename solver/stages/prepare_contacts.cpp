@@ -1,3 +1,4 @@
+#include <algorithm>
 #include <cstring>
 #include <type_traits>
 
@@ -88,9 +89,28 @@ static void set_extra(const StepContext<D>& context, const WorldState<D>& state,
     set_materials(context, state, contact, live, materials, lane, contacts.extra_of(place), block);
 }
 
-/// Shares the contacts of each colour out to blocks of W; the overflow gets one contact per block.
+/// How many blocks there is to be memory for: of all contacts, or where the tick is divided, of one
+/// lot for each thread. Those of a lot are done with when the next one begins, so they stay in the
+/// cache; and no two threads write to one line.
 template <int D, int W>
-static void lay_out(const Coloring& coloring, ContactBlocks<D, W>& out) {
+static std::size_t room_for(int threads, const Lots& lots, const ContactBlocks<D, W>& contacts) {
+  if (lots.all.empty()) return contacts.members.size();
+  int most = 0;
+  for (const Lot& lot : lots.all) {
+    const Range blocks = contacts.blocks_of(lot);
+    most = std::max(most, blocks.end - blocks.begin);
+  }
+  return static_cast<std::size_t>(most) * static_cast<std::size_t>(threads);
+}
+
+/// Shares the contacts of each colour out to blocks of W; the overflow gets one contact per block.
+///
+/// Reads the colouring and the lots; writes which contacts each block has, and makes room for the
+/// blocks. @returns the lot of all contacts. Serial.
+template <int D, int W>
+Lot lay_out_contacts(Workers& workers, StepScratch<D>& scratch) {
+  auto& out = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const Coloring& coloring = scratch.contact_coloring;
   out.members.clear();
   const auto add = [&](const Range& color, int width) {
     const auto first = static_cast<int>(out.members.size());
@@ -101,27 +121,38 @@ static void lay_out(const Coloring& coloring, ContactBlocks<D, W>& out) {
   out.colors.clear();
   for (const Range& color : coloring.colors) out.colors.push_back(add(color, kLaneCount<W>));
   out.overflow = add(coloring.overflow, 1);
-  out.blocks.resize(out.members.size());
-  out.extras.resize(out.members.size());
+  const std::size_t room = room_for(workers.count(), scratch.lots, out);
+  out.blocks.resize(room);
+  out.extras.resize(room);
+  return {{0, static_cast<int>(scratch.moving_bodies.size())},
+          {0, static_cast<int>(out.colors.size())},
+          out.overflow};
 }
 
-/// Fills blocks of W contacts, colour by colour.
+template <int D, int W>
+void seat_lot(int seat, const Workers& workers, const StepScratch<D>& scratch, Lot& lot) {
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  const int room = static_cast<int>(contacts.blocks.size()) / workers.count();
+  lot.blocks_before = contacts.blocks_of(lot).begin - seat * room;
+}
+
+/// Fills a lot's blocks of W contacts, colour by colour.
 ///
 /// Reads live contacts, their impulses, materials, masses, bodies and colouring; writes the blocks
 /// of width W, each from its own contacts, so any split into ranges gives the same bits.
+/// @pre lay_out_contacts.
 template <int D, int W>
-void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
-                      StepScratch<D>& scratch) {
+void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Lot& lot,
+                      Workers& workers, StepScratch<D>& scratch) {
   auto& out = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const Coloring& coloring = scratch.contact_coloring;
-  const ContactInputs<D> inputs{scratch.live.data(), scratch.contacts.data(), scratch.masses.data(),
-                                static_cast<std::uint32_t>(state.bodies.size()),
-                                context.tuning.warm_starting};
-  lay_out(coloring, out);
+  const ContactInputs<D> inputs = contact_inputs(context, state, scratch);
   const bool always_extra = context.tuning.stabilisation == Stabilisation::kXpbd ||
                             context.tuning.stabilisation == Stabilisation::kSplitImpulse;
-  const auto fill = [&](std::size_t place) {
-    const Range members = out.members[place];
+  const Range all = out.blocks_of(lot);
+  const auto fill = [&](int block) {
+    const Range members = out.members[static_cast<std::size_t>(block)];
+    const auto place = static_cast<std::size_t>(block - lot.blocks_before);
     const int* places = coloring.order.data() + members.begin;
     const int count = members.end - members.begin;
     static_assert(std::is_trivially_copyable_v<ContactBlock<D, W>>);
@@ -134,20 +165,23 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
     }
   };
   const LoadBounds bounds = load_bounds(context);
-  workers.parallel_for(static_cast<int>(out.blocks.size()), kBlockGrain, [&](Range range) {
-    for (int i = range.begin; i < range.end; ++i) fill(static_cast<std::size_t>(i));
-    ContactKernels<D, W>::complete(bounds, block_range<D, W>({}, scratch, range));
+  workers.parallel_for(all.end - all.begin, kBlockGrain, [&](Range range) {
+    const Range blocks{all.begin + range.begin, all.begin + range.end};
+    for (int i = blocks.begin; i < blocks.end; ++i) fill(i);
+    ContactKernels<D, W>::complete(bounds, block_range<D, W>(lot, scratch, blocks));
   });
-  out.follows = false;
-  out.bounces = false;
-  for (const ContactBlock<D, W>& block : out.blocks) {
-    out.follows = out.follows || block.follows;
-    out.bounces = out.bounces || block.bounces;
+  const BlockRange<D, W> filled = block_range<D, W>(lot, scratch, all);
+  lot.follows = lot.bounces = false;
+  for (const ContactBlock<D, W>* block = filled.begin; block != filled.end; ++block) {
+    lot.follows = lot.follows || block->follows;
+    lot.bounces = lot.bounces || block->bounces;
   }
 }
 
 template <int D, int W>
 struct InstantiatePrepare {
+  static constexpr auto kLayOut = &lay_out_contacts<D, W>;
+  static constexpr auto kSeat = &seat_lot<D, W>;
   static constexpr auto kPrepare = &prepare_contacts<D, W>;
 };
 template struct InstantiatePrepare<2, 1>;

@@ -10,6 +10,8 @@
 
 namespace cycloid::solver {
 
+struct Statistics;
+
 /// The stages of a step, in the order in which `step.cpp` calls them. Each reads and writes what
 /// its comment in stages/*.cpp says, and nothing else; docs/architecture.md has the table.
 
@@ -46,8 +48,16 @@ template <int D>
 void prepare_pins(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch);
 template <int D, int W>
-void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+void join_loaded_lots(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch);
+template <int D, int W>
+Lot lay_out_contacts(Workers& workers, StepScratch<D>& scratch);
+/// Gives a lot the memory for blocks that belongs to whoever has taken that seat.
+template <int D, int W>
+void seat_lot(int seat, const Workers& workers, const StepScratch<D>& scratch, Lot& lot);
+template <int D, int W>
+void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state, Lot& lot,
+                      Workers& workers, StepScratch<D>& scratch);
 
 template <int D>
 void integrate_velocities(const StepContext<D>& context, const Lot& lot, Workers& workers,
@@ -120,6 +130,8 @@ template <int D>
 void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state);
 template <int D>
 void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state);
+template <int D>
+Statistics count_work(const WorldState<D>& state, const StepScratch<D>& scratch);
 
 /// Ranges of this many bodies, blocks or joints go to one thread at a time; of pairs, kPairGrain.
 inline constexpr int kBodyGrain = 256;
@@ -179,12 +191,20 @@ void for_each_joint_by_color(Workers& workers, StepScratch<D>& scratch, OnPins&&
   for (int i = single.overflow.begin; i < single.overflow.end; ++i) on_row(row_at(i));
 }
 
+/// What blocks of contacts are filled from. @pre prepare_bodies.
+template <int D>
+ContactInputs<D> contact_inputs(const StepContext<D>& context, const WorldState<D>& state,
+                                const StepScratch<D>& scratch) {
+  return {scratch.live.data(), scratch.contacts.data(), scratch.masses.data(),
+          static_cast<std::uint32_t>(state.bodies.size()), context.tuning.warm_starting};
+}
+
 /// What a kernel of contacts works on. @pre the blocks of the range share no body that moves.
 template <int D, int W>
 BlockRange<D, W> block_range(const Lot& lot, StepScratch<D>& scratch, Range range) {
   ContactBlock<D, W>* blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks.data();
-  return {blocks + range.begin, blocks + range.end, scratch.motions.data(), lot.poses,
-          scratch.slides_far};
+  return {blocks + (range.begin - lot.blocks_before), blocks + (range.end - lot.blocks_before),
+          scratch.motions.data(), lot.poses, scratch.slides_far};
 }
 
 /// Runs `run(BlockRange)` for the contacts of a lot: for_each_range_by_color.

@@ -99,6 +99,19 @@ TEST(Lots, AreOneBesideWhatMovesWithoutMass) {
   EXPECT_EQ(lots_of(divided, whole, 60)[59], 1u);
 }
 
+// Which islands are solved at once is asked of all contacts, so that tick is not divided.
+TEST(Lots, AreOneWhileAContactIsLoaded) {
+  World<2> divided = row_of_pyramids<2>();
+  World<2> whole = row_of_pyramids<2>();
+  ShapeDef<2> heavy = box(0.5f, 0.5f);
+  heavy.density = 500.0f;
+  for (World<2>* world : {&divided, &whole}) add_at<2>(*world, {{21.0f, 5.0f}}, heavy);
+  divided.set_lot_contacts(20);
+  const std::vector<std::uint32_t> lots = lots_of(divided, whole, 90);
+  EXPECT_GT(lots[5], 1u);  // It falls.
+  EXPECT_EQ(lots[89], 1u);
+}
+
 TEST(Lots, AreOneWhereNobodyAsksForThemInASmallWorld) {
   World<2> world = row_of_pyramids<2>();
   step(world, 3);
