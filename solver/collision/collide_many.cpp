@@ -9,10 +9,14 @@ static bool is_outline(ShapeKind kind) {
   return kind == ShapeKind::kPolygon || kind == ShapeKind::kCapsule || kind == ShapeKind::kSegment;
 }
 
-/// Whether it is one of the outlines that are collided in lanes.
-static bool has_few_corners(const Shape<2>& shape) {
-  return shape.kind == ShapeKind::kCapsule ||
-         (shape.kind == ShapeKind::kPolygon && shape.vertex_count <= 4);
+/// What is done to a pair: one of each for its two shapes.
+enum class InLanes : std::uint8_t { kOutline, kBall, kNever };
+
+static InLanes way_of(const Shape<2>& shape) {
+  if (shape.kind == ShapeKind::kBall) return InLanes::kBall;
+  const bool has_few_corners = shape.kind == ShapeKind::kCapsule ||
+                               (shape.kind == ShapeKind::kPolygon && shape.vertex_count <= 4);
+  return has_few_corners ? InLanes::kOutline : InLanes::kNever;
 }
 
 /// Collides pair after pair. What a pair has of its shape a alone is made once for pairs in a row
@@ -43,7 +47,7 @@ struct Waiting {
   int count = 0;
 };
 
-/// What is done to pairs in lanes: two outlines, or an outline and a ball.
+/// What is done to pairs in lanes: two outlines, an outline and a ball, or two balls.
 struct TwoOutlines {
   template <int W, class... Arguments>
   static void collide(const Arguments&... arguments) {
@@ -54,6 +58,12 @@ struct OutlineAndBall {
   template <int W, class... Arguments>
   static void collide(const Arguments&... arguments) {
     FewCornered<W>::collide_ball(arguments...);
+  }
+};
+struct TwoBalls {
+  template <int W, class... Arguments>
+  static void collide(const Arguments&... arguments) {
+    FewCornered<W>::collide_balls(arguments...);
   }
 };
 
@@ -94,25 +104,21 @@ static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* p
 template <>
 void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>* manifolds) const {
   OneByOne one_by_one;
-  Waiting outlines;
-  Waiting balls;
+  Waiting by_balls[3];  // By how many of the two are balls.
   for (int i = 0; i < count; ++i) {
-    const Shape<2>& a = shapes[pairs[i].shape_a];
-    const Shape<2>& b = shapes[pairs[i].shape_b];
-    const bool few_a = has_few_corners(a);
-    const bool few_b = has_few_corners(b);
-    const bool with_ball =
-        (few_a && b.kind == ShapeKind::kBall) || (few_b && a.kind == ShapeKind::kBall);
-    if (lanes != 1 && few_a && few_b)
-      outlines.pairs[outlines.count++] = static_cast<std::uint32_t>(i);
-    else if (lanes != 1 && with_ball)
-      balls.pairs[balls.count++] = static_cast<std::uint32_t>(i);
-    else
+    const InLanes a = way_of(shapes[pairs[i].shape_a]);
+    const InLanes b = way_of(shapes[pairs[i].shape_b]);
+    if (lanes == 1 || a == InLanes::kNever || b == InLanes::kNever) {
       manifolds[i] = one_by_one(*this, pairs[i]);
+      continue;
+    }
+    Waiting& waiting = by_balls[static_cast<int>(a) + static_cast<int>(b)];
+    waiting.pairs[waiting.count++] = static_cast<std::uint32_t>(i);
   }
   at_width(lanes, [&]<int W>() {
-    collide_in_lanes<TwoOutlines, W>(*this, pairs, outlines, one_by_one, manifolds);
-    collide_in_lanes<OutlineAndBall, W>(*this, pairs, balls, one_by_one, manifolds);
+    collide_in_lanes<TwoOutlines, W>(*this, pairs, by_balls[0], one_by_one, manifolds);
+    collide_in_lanes<OutlineAndBall, W>(*this, pairs, by_balls[1], one_by_one, manifolds);
+    collide_in_lanes<TwoBalls, W>(*this, pairs, by_balls[2], one_by_one, manifolds);
   });
 }
 

@@ -6,8 +6,9 @@
 
 namespace cycloid::solver {
 
-/// Outlines of two to four corners, boxes and capsules above all, against one another, a pair in
-/// each lane: the formulas of hull_against_hull, with selects for its branches, so the same bits.
+/// Outlines of two to four corners, boxes and capsules above all, and balls against one another, a
+/// pair in each lane: the formulas of hull_against_hull, hull_against_ball and ball_against_ball,
+/// with selects for their branches, so the same bits.
 /// Compiled for each width: few_cornered.cpp, few_cornered_avx2.cpp and few_cornered_avx512.cpp.
 template <int W>
 struct FewCornered {
@@ -15,9 +16,12 @@ struct FewCornered {
   /// @pre every shape is a capsule, or a polygon with a `vertex_count` of 4 at most.
   static void collide(const Shape<2>* shapes, const PlacedPair<2>* pairs,
                       const LaneIndices<W>& pair_in_lane, Manifold<2>* manifolds);
-  /// The same of such an outline and a ball, in either order: the formulas of hull_against_ball.
+  /// The same of such an outline and a ball, in either order.
   static void collide_ball(const Shape<2>* shapes, const PlacedPair<2>* pairs,
                            const LaneIndices<W>& pair_in_lane, Manifold<2>* manifolds);
+  /// The same of two balls.
+  static void collide_balls(const Shape<2>* shapes, const PlacedPair<2>* pairs,
+                            const LaneIndices<W>& pair_in_lane, Manifold<2>* manifolds);
 };
 
 }  // namespace cycloid::solver
