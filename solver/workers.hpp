@@ -21,7 +21,9 @@ struct Range {
 class Tally {
  public:
   explicit Tally(std::uint64_t limit = 0) : limit_(limit) {}
-  void add(std::uint64_t count) { sum_.fetch_add(count, std::memory_order_relaxed); }
+  void add(std::uint64_t count) {
+    if (count > 0) sum_.fetch_add(count, std::memory_order_relaxed);
+  }
   bool is_over() const { return sum() > limit_; }
   std::uint64_t sum() const { return sum_.load(std::memory_order_relaxed); }
 

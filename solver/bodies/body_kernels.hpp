@@ -27,6 +27,11 @@ struct BodyKernels {
   static bool move_in_space(float h, const Body<3>* bodies, const std::uint32_t* slots,
                             Motion<3>* motions);
 
+  /// A bit for each body that may have moved by nearly half its thickness in the tick, or its
+  /// corner turned so far: of all others is_fast is false. @pre count <= 64.
+  static std::uint64_t moved_far(float tick_s, const Body<2>* bodies, const std::uint32_t* slots,
+                                 int count, const Motion<2>* motions);
+
   /// The boxes of shapes: bounds_of, then along the flight. @pre every shape has one to four
   /// vertices.
   static void find_boxes(const FlyingShape* flying, const std::uint32_t* shapes, int count,

@@ -56,6 +56,43 @@ void BodyKernels<W>::move(float h, const std::uint32_t* slots, int count, Motion
   }
 }
 
+/// As is_slow has it, with squares in place of the root.
+template <int W>
+[[gnu::always_inline]] inline LaneBits moved_far_in_lanes(Lanes<W> tick_s, Lanes<W> extent,
+                                                          Lanes<W> thickness,
+                                                          const MotionLanes<2, W>& motion) {
+  using L = Lanes<W>;
+  const L spun = tick_s * motion.spin[0];
+  const L sine = motion.delta_rotation[1];
+  const L turn = select(motion.delta_rotation[0] < L(0.0f), L(2.0f * kPi),
+                        L(1.6f) * max(sine, -sine) + L(1.0e-5f));
+  const L room = L(0.499f) * thickness - extent * turn;
+  const auto is_slow = (room > L(0.0f)) & (spun * spun < L(9.0f)) &
+                       (dot(motion.delta_position, motion.delta_position) < room * room);
+  return kAllLanes<W> & ~bits_of<W>(is_slow);
+}
+
+template <int W>
+std::uint64_t BodyKernels<W>::moved_far(float tick_s, const Body<2>* bodies,
+                                        const std::uint32_t* slots, int count,
+                                        const Motion<2>* motions) {
+  constexpr int kExtentAt = offsetof(Body<2>, extent) / sizeof(float);
+  static_assert(offsetof(Body<2>, thickness) == offsetof(Body<2>, extent) + sizeof(float));
+  static_assert(sizeof(Body<2>) >= offsetof(Body<2>, extent) + sizeof(Quad));
+  std::uint64_t far = 0;
+  for (int begin = 0; begin < count; begin += kLaneCount<W>) {
+    LaneIndices<W> in_lane;
+    const LaneBits used = take_slots<W>(slots + begin, count - begin, in_lane);
+    Lanes<W> of_body[4];
+    gather_floats<W>(bodies, in_lane, kExtentAt, of_body);
+    const MotionLanes<2, W> motion = gather<2, W>(motions, in_lane);
+    const LaneBits bits =
+        used & moved_far_in_lanes<W>(Lanes<W>(tick_s), of_body[0], of_body[1], motion);
+    far |= std::uint64_t{bits} << begin;
+  }
+  return far;
+}
+
 /// The corners of boxes in lanes.
 template <int W>
 struct BoundsLanes {

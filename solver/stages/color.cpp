@@ -56,18 +56,18 @@ static void assign_colors(std::size_t count, PairOf&& pair_of, std::vector<std::
 }
 
 void sort_by_color(const Colors& colors, Coloring& coloring) {
+  const int count = static_cast<int>(colors.of.size());
   int next[kColorsMax + 1];
   int at = 0;
   coloring.colors.clear();
-  for (int color = 0; color <= kColorsMax; ++color) {
+  // Colours are taken from the lowest on, so behind one that is empty only the overflow may be.
+  for (int color = 0; color < kColorsMax && colors.sizes[color] > 0; ++color) {
     next[color] = at;
-    const Range range{at, at + colors.sizes[color]};
-    if (color == kColorsMax)
-      coloring.overflow = range;
-    else if (colors.sizes[color] > 0)
-      coloring.colors.push_back(range);
-    at = range.end;
+    coloring.colors.push_back({at, at + colors.sizes[color]});
+    at += colors.sizes[color];
   }
+  next[kColorsMax] = at;
+  coloring.overflow = {at, count};
   coloring.order.resize(colors.of.size());
   for (std::size_t i = 0; i < colors.of.size(); ++i)
     coloring.order[static_cast<std::size_t>(next[colors.of[i]]++)] = static_cast<int>(i);

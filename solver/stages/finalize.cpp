@@ -1,19 +1,62 @@
+#include <cstddef>
+#include <limits>
+
 #include "solver/constraints/joints/unwrap.hpp"
 #include "solver/stages/active_contacts.hpp"
 #include "solver/stages/stages.hpp"
+#include "solver/transpose.hpp"
 #include "solver/validate.hpp"
 
 namespace cycloid::solver {
+
+/// Of the change of a rotation in a tick, which is of unit length.
+static constexpr float kRotationMax = 2.0f;
 
 /// What of a body would leave the bounds, or kFaultNone.
 template <int D>
 static FaultField fault_of(const Body<D>& body, const Motion<D>& motion) {
   if (!within(body.position + motion.delta_position, kPositionMax)) return kFaultPosition;
-  if (!within(motion.delta_rotation, 2.0f)) return kFaultRotation;
+  if (!within(motion.delta_rotation, kRotationMax)) return kFaultRotation;
   if (!within(motion.velocity, kSpeedMax)) return kFaultVelocity;
   if (!within(motion.spin, kSpinMax)) return kFaultSpin;
   return kFaultNone;
 }
+
+/// What the floats of a motion may be at the most, and those of where it leads.
+template <int D>
+class MotionBounds {
+ public:
+  MotionBounds() {
+    for (int i = 0; i < 4; ++i) position_[i] = i < D ? kPositionMax : kAny;
+    constexpr int kPositionAt = D + Dim<D>::kSpin;
+    for (int i = 0; i < 4 * kPoseQuads<D>; ++i) motion_[i] = kAny;
+    for (int i = 0; i < kPositionAt; ++i) motion_[i] = i < D ? kSpeedMax : kSpinMax;
+    for (int i = kPositionAt + D; i < kMotionComponents<D>; ++i) motion_[i] = kRotationMax;
+  }
+
+  /// Four floats at a time, for nearly all bodies are asked for nothing more. False wherever
+  /// fault_of finds one.
+  bool hold(const Body<D>& body, const Motion<D>& motion) const {
+    constexpr int kAt = offsetof(Body<D>, position) / sizeof(float);
+    constexpr int kDeltaAt = D + Dim<D>::kSpin;
+    auto held = lies(load_floats(body, kAt) + load_floats(motion, kDeltaAt), position_);
+    for (int quad = 0; quad < kPoseQuads<D>; ++quad)
+      held = held & lies(load_quad(motion, quad), motion_ + 4 * quad);
+    return bits_of<4>(held) == kAllLanes<4>;
+  }
+
+ private:
+  using L = Lanes<4>;
+  static constexpr float kAny = std::numeric_limits<float>::infinity();
+
+  static L::Mask lies(const Quad& value, const float* most) {
+    const L bound = L::load(most);
+    return (value <= bound.raw) & (value >= (-bound).raw);
+  }
+
+  alignas(16) float position_[4];
+  alignas(16) float motion_[4 * kPoseQuads<D>];
+};
 
 /// Reads the motions of who is awake, which alone can move; writes nothing. Whether there is a
 /// fault is asked in ranges; if so, which one, in slot order, so that every machine names the same
@@ -21,16 +64,17 @@ static FaultField fault_of(const Body<D>& body, const Motion<D>& motion) {
 template <int D>
 Fault find_fault(const WorldState<D>& state, Workers& workers, const StepScratch<D>& scratch) {
   const std::vector<std::uint32_t>& awake = scratch.awake_bodies;
-  Tally faults;
+  const MotionBounds<D> bounds;
+  Tally doubts;
   workers.parallel_for(static_cast<int>(awake.size()), kBodyGrain, [&](Range range) {
-    bool any = false;
+    bool all = true;
     for (int i = range.begin; i < range.end; ++i) {
       const std::uint32_t slot = awake[static_cast<std::size_t>(i)];
-      any = any || fault_of(state.bodies[slot], scratch.motions[slot]) != kFaultNone;
+      all = all && bounds.hold(state.bodies[slot], scratch.motions[slot]);
     }
-    if (any) faults.add(1);
+    if (!all) doubts.add(1);
   });
-  if (faults.sum() == 0) return {};
+  if (doubts.sum() == 0) return {};
   for (const std::uint32_t i : awake) {
     const FaultField field = fault_of(state.bodies[i], scratch.motions[i]);
     if (field != kFaultNone) return {state.header.tick + 1, {i, state.bodies[i].generation}, field};

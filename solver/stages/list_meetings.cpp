@@ -1,3 +1,7 @@
+#include <bit>
+
+#include "solver/bodies/body_kernels.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/stages/fast_bodies.hpp"
 #include "solver/stages/in_chunks.hpp"
 #include "solver/stages/may_touch.hpp"
@@ -7,9 +11,8 @@ namespace cycloid::solver {
 
 /// Whether it moves so little in a tick that `is_fast` is false. Most do, and to be sure of it is
 /// cheaper than its way.
-template <int D>
-static bool is_slow(const StepContext<D>& context, const Body<D>& body, const Motion<D>& motion) {
-  const Spin<D> spun = context.tick_s * motion.spin;
+static bool is_slow(const StepContext<3>& context, const Body<3>& body, const Motion<3>& motion) {
+  const Spin<3> spun = context.tick_s * motion.spin;
   if (dot(spun, spun) > 9.0f) return false;
   const float way = length(motion.delta_position) + body.extent * turn_bound(motion.delta_rotation);
   return 1.001f * way < 0.5f * body.thickness;
@@ -25,18 +28,40 @@ static bool is_fast(const StepContext<D>& context, const Body<D>& body, const Mo
   return flown > enough || flown + body.extent * length(turn_in(context, motion)) > enough;
 }
 
+/// A bit for each of these bodies of which is_slow is not certain. @pre there are 64 at most.
+static std::uint64_t moved_far(const StepContext<3>& context, const WorldState<3>& state,
+                               std::span<const std::uint32_t> slots,
+                               const StepScratch<3>& scratch) {
+  std::uint64_t far = 0;
+  for (std::size_t i = 0; i < slots.size(); ++i)
+    if (!is_slow(context, state.bodies[slots[i]], scratch.motions[slots[i]]))
+      far |= std::uint64_t{1} << i;
+  return far;
+}
+static std::uint64_t moved_far(const StepContext<2>& context, const WorldState<2>& state,
+                               std::span<const std::uint32_t> slots,
+                               const StepScratch<2>& scratch) {
+  return at_width(widest_lanes(context.lanes), [&]<int W>() {
+    return BodyKernels<W>::moved_far(context.tick_s, state.bodies.data(), slots.data(),
+                                     static_cast<int>(slots.size()), scratch.motions.data());
+  });
+}
+
 template <int D>
 static void list_fast(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
   const std::vector<std::uint32_t>& awake = scratch.awake_bodies;
   scratch.fast_bodies.clear();
   const auto list = [&](Range range, std::vector<FastBody>& fast) {
-    for (auto i = static_cast<std::size_t>(range.begin); i < static_cast<std::size_t>(range.end);
-         ++i) {
-      const Body<D>& body = state.bodies[awake[i]];
-      const Motion<D>& motion = scratch.motions[awake[i]];
-      if (!is_slow(context, body, motion) && is_fast(context, body, motion))
-        fast.push_back({awake[i]});
+    for (int begin = range.begin; begin < range.end; begin += kPairGrain) {
+      const auto slots = std::span(awake).subspan(
+          static_cast<std::size_t>(begin),
+          static_cast<std::size_t>(std::min(kPairGrain, range.end - begin)));
+      std::uint64_t far = moved_far(context, state, slots, scratch);
+      for (; far != 0; far &= far - 1) {
+        const std::uint32_t slot = slots[static_cast<std::size_t>(std::countr_zero(far))];
+        if (is_fast(context, state.bodies[slot], scratch.motions[slot])) fast.push_back({slot});
+      }
     }
   };
   list_in_chunks(workers, static_cast<int>(awake.size()), kPairGrain, scratch.fast_chunks,

@@ -1,5 +1,7 @@
 #include "solver/bodies/body_kernels.hpp"
 
+#include <algorithm>
+#include <cmath>
 #include <cstring>
 #include <random>
 #include <vector>
@@ -98,6 +100,48 @@ static void expect_boxes_as_of_one(const Flock& flock) {
     }
 }
 
+struct MovedBodies {
+  std::vector<Body<2>> bodies;
+  std::vector<Motion<2>> motions;
+  std::vector<std::uint32_t> slots;
+};
+
+/// Bodies that move by about as much as their thickness allows; one in eight of no number.
+static MovedBodies drawn_moved(std::mt19937& random, std::uint32_t count) {
+  MovedBodies moved;
+  for (std::uint32_t i = 0; i < 2 * count; ++i) {
+    Body<2> body{};
+    body.extent = 1.5f + drawn(random, 1.0f);
+    body.thickness = 0.5f + drawn(random, 0.5f);
+    moved.bodies.push_back(body);
+    const float angle = random() % 4 == 0 ? drawn(random, 3.1f) : drawn(random, 0.1f);
+    const float spin = random() % 4 == 0 ? drawn(random, 400.0f) : 60.0f * angle;
+    Motion<2> motion{{{0.0f, 0.0f}},
+                     {{spin}},
+                     {{drawn(random, 0.3f), drawn(random, 0.3f)}},
+                     rotation_by(Spin<2>{{angle}})};
+    if (random() % 8 == 0) motion.delta_position[random() % 2] = std::nanf("");
+    moved.motions.push_back(motion);
+    if (i % 2 == 1) moved.slots.push_back(i);
+  }
+  return moved;
+}
+
+/// How far its farthest corner goes, m, with whole turns: or, of no number, as far as it gets.
+static double way_of(double tick_s, const Body<2>& body, const Motion<2>& motion) {
+  const double flown = std::hypot(motion.delta_position[0], motion.delta_position[1]);
+  const double spun = std::abs(tick_s * motion.spin[0]);
+  const double turned = std::abs(std::atan2(motion.delta_rotation[1], motion.delta_rotation[0]));
+  return std::isnan(flown) ? 1.0e9
+                           : flown + body.extent * std::max(spun > 3.0 ? spun : 0.0, turned);
+}
+
+template <int W>
+static std::uint64_t moved_far(const MovedBodies& moved) {
+  return BodyKernels<W>::moved_far(1.0f / 60.0f, moved.bodies.data(), moved.slots.data(),
+                                   static_cast<int>(moved.slots.size()), moved.motions.data());
+}
+
 /// Calls act.template operator()<W>() for every width that this processor has.
 template <class Act>
 static void for_each_width(Act&& act) {
@@ -131,6 +175,28 @@ TEST(BodyKernels, FindTheBoxesOfOneByOneAtEveryWidth) {
     for_each_width([&]<int W>() { expect_boxes_as_of_one<W>(flock); });
     ASSERT_FALSE(HasFailure());
   }
+}
+
+TEST(BodyKernels, FindWhoMayHaveMovedByHalfItsThicknessAtEveryWidth) {
+  std::mt19937 random(20261127);
+  int far_count = 0;
+  int near_count = 0;
+  for (std::uint32_t round = 0; round < 640; ++round) {
+    const MovedBodies moved = drawn_moved(random, 1 + round % 64);
+    const std::uint64_t far = moved_far<1>(moved);
+    for_each_width([&]<int W>() { EXPECT_EQ(far, moved_far<W>(moved)) << "width " << W; });
+    for (std::size_t i = 0; i < moved.slots.size(); ++i) {
+      const Body<2>& body = moved.bodies[moved.slots[i]];
+      const double way = way_of(1.0 / 60.0, body, moved.motions[moved.slots[i]]);
+      const bool is_far = (far >> i & 1u) != 0;
+      EXPECT_TRUE(is_far || way <= 0.5 * body.thickness) << way << " of " << body.thickness;
+      EXPECT_TRUE(!is_far || way >= 0.2 * body.thickness) << way << " of " << body.thickness;
+      ++(is_far ? far_count : near_count);
+    }
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(far_count, 2000);
+  EXPECT_GT(near_count, 2000);
 }
 
 }  // namespace cycloid::solver
