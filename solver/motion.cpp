@@ -5,9 +5,10 @@
 namespace cycloid::solver {
 
 Rotation<2> rotation_by(const Spin<2>& turn) {
-  Rotation<2> q;
-  sin_cos(turn[0], q[1], q[0]);
-  return q;
+  float sine = 0.0f;
+  float cosine = 0.0f;
+  sin_cos(turn[0], sine, cosine);  // Into q it would wait for both to be read back as one.
+  return {{cosine, sine}};
 }
 
 Rotation<3> rotation_by(const Spin<3>& turn) {

@@ -44,7 +44,15 @@ static void list_points(const HeldPair& pair, int beside, std::size_t first,
   const int b = solver.node_of[pair.b];
   for (int point = 0; point < pair.points; ++point) {
     const std::size_t group = first + static_cast<std::size_t>(point);
-    solver.groups[group] = {a, b, beside, 0, 0, pair.lane >= 0, 0.0, {}, {}};
+    // Field by field: a whole record would be made on the stack first, and read before it is there.
+    IslandRows<D>& rows = solver.groups[group];
+    rows.node_a = a;
+    rows.node_b = b;
+    rows.pair = beside;
+    rows.first = rows.count = rows.points = 0;
+    rows.is_contact = pair.lane >= 0;
+    rows.friction = 0.0;
+    rows.arm_a = rows.arm_b = Vec<D, Wide>::zero();
     solver.sources[group] = {pair.place, pair.lane, point};
   }
 }
