@@ -2,8 +2,10 @@
 
 #include <cstdint>
 #include <cstring>
-#ifdef CYCLOID_AVX512_UNIT
+#if defined(CYCLOID_AVX512_UNIT) || defined(__AVX2__)
 #include <immintrin.h>
+#elif defined(__SSE2__)
+#include <emmintrin.h>
 #endif
 
 #include "solver/arithmetic.hpp"
@@ -119,7 +121,8 @@ struct alignas(4 * kLaneCount<W>) Lanes {
   }
 };
 
-/// The lanes of a mask, a bit each.
+/// The lanes of a mask, a bit each: where a processor has an instruction for it, it is several
+/// times as fast.
 template <int W>
 [[gnu::always_inline]] inline std::uint32_t bits_of(const typename Lanes<W>::Mask& mask) {
 #ifdef CYCLOID_AVX512_UNIT
@@ -127,6 +130,20 @@ template <int W>
     __m512i lanes;
     std::memcpy(&lanes, &mask, sizeof lanes);
     return _mm512_movepi32_mask(lanes);
+  }
+#endif
+#ifdef __AVX2__
+  if constexpr (W == kAvx2Lanes) {
+    __m256 lanes;
+    std::memcpy(&lanes, &mask, sizeof lanes);
+    return static_cast<std::uint32_t>(_mm256_movemask_ps(lanes));
+  }
+#endif
+#ifdef __SSE2__
+  if constexpr (W == 4) {
+    __m128 lanes;
+    std::memcpy(&lanes, &mask, sizeof lanes);
+    return static_cast<std::uint32_t>(_mm_movemask_ps(lanes));
   }
 #endif
   typename Lanes<W>::Mask own{};

@@ -91,8 +91,10 @@ struct WideCorners {
   /// The first corner of that height. @pre `survey` has found it.
   std::uint32_t first_at(float height) const {
     std::uint32_t i = 0;
-    while (heights[i] != height) ++i;
-    return i;
+    std::uint32_t bits = 0;
+    for (; bits == 0; i += kWide)
+      bits = bits_of<kWide>(WideLanes::load(heights + i) == WideLanes(height));
+    return i - kWide + static_cast<std::uint32_t>(std::countr_zero(bits));
   }
 
   std::uint32_t count;
