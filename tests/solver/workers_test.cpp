@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <numeric>
 #include <vector>
 
 namespace cycloid::solver {
@@ -29,6 +30,31 @@ TEST(Workers, RunEveryIndexOnceInRangesOfTheGrain) {
       }
     }
   }
+}
+
+// Each works in its seat as if it were alone there: what is no atomic number would else lose
+// counts, and a thread sanitizer say so.
+TEST(Seats, AreLentToOneThreadAtATimeAndAreAsFewAsTheThreads) {
+  constexpr int kThreads = 4;
+  constexpr int kJobs = 4000;
+  Workers workers(kThreads);
+  Seats seats;
+  std::vector<int> jobs_in(64, 0);
+  workers.parallel_for(kJobs, 1, [&](Range) {
+    const int seat = seats.take();
+    ++jobs_in[static_cast<std::size_t>(seat)];
+    seats.give_back(seat);
+  });
+  EXPECT_EQ(std::accumulate(jobs_in.begin(), jobs_in.begin() + kThreads, 0), kJobs);
+  EXPECT_EQ(std::count(jobs_in.begin() + kThreads, jobs_in.end(), 0), 64 - kThreads);
+}
+
+TEST(Seats, OfOneThreadAreTheFirst) {
+  Seats seats;
+  for (int seat = 0; seat < 64; ++seat) EXPECT_EQ(seats.take(), seat);
+  seats.give_back(17);
+  seats.give_back(5);
+  EXPECT_EQ(seats.take(), 5);
 }
 
 }  // namespace cycloid::solver
