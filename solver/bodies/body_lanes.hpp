@@ -56,7 +56,8 @@ void BodyKernels<W>::move(float h, const std::uint32_t* slots, int count, Motion
   }
 }
 
-/// As is_slow has it, with squares in place of the root.
+/// As is_slow has it in space (stages/list_meetings.cpp), with turn_bound in lanes, and squares in
+/// place of the root: nobody sees who is asked once more, as long as nobody fast is left out.
 template <int W>
 [[gnu::always_inline]] inline LaneBits moved_far_in_lanes(Lanes<W> tick_s, Lanes<W> extent,
                                                           Lanes<W> thickness,

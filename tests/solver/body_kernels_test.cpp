@@ -103,8 +103,20 @@ static void expect_boxes_as_of_one(const Flock& flock) {
 struct MovedBodies {
   std::vector<Body<2>> bodies;
   std::vector<Motion<2>> motions;
+  std::vector<double> ways;  ///< Of the farthest corner, m; of what is no number, very far.
   std::vector<std::uint32_t> slots;
 };
+
+/// With whole turns, and without a function of libm, which is another on each platform: the root of
+/// doubles is exact.
+static double way_of(double tick_s, const Body<2>& body, const Motion<2>& motion, double angle) {
+  const double x = motion.delta_position[0];
+  const double y = motion.delta_position[1];
+  const double flown = std::sqrt(x * x + y * y);
+  const double spun = std::abs(tick_s * motion.spin[0]);
+  const double turned = std::max(spun > 3.0 ? spun : 0.0, std::abs(angle));
+  return std::isnan(flown) ? 1.0e9 : flown + body.extent * turned;
+}
 
 /// Bodies that move by about as much as their thickness allows; one in eight of no number.
 static MovedBodies drawn_moved(std::mt19937& random, std::uint32_t count) {
@@ -122,18 +134,10 @@ static MovedBodies drawn_moved(std::mt19937& random, std::uint32_t count) {
                      rotation_by(Spin<2>{{angle}})};
     if (random() % 8 == 0) motion.delta_position[random() % 2] = std::nanf("");
     moved.motions.push_back(motion);
+    moved.ways.push_back(way_of(1.0 / 60.0, body, motion, angle));
     if (i % 2 == 1) moved.slots.push_back(i);
   }
   return moved;
-}
-
-/// How far its farthest corner goes, m, with whole turns: or, of no number, as far as it gets.
-static double way_of(double tick_s, const Body<2>& body, const Motion<2>& motion) {
-  const double flown = std::hypot(motion.delta_position[0], motion.delta_position[1]);
-  const double spun = std::abs(tick_s * motion.spin[0]);
-  const double turned = std::abs(std::atan2(motion.delta_rotation[1], motion.delta_rotation[0]));
-  return std::isnan(flown) ? 1.0e9
-                           : flown + body.extent * std::max(spun > 3.0 ? spun : 0.0, turned);
 }
 
 template <int W>
@@ -187,7 +191,7 @@ TEST(BodyKernels, FindWhoMayHaveMovedByHalfItsThicknessAtEveryWidth) {
     for_each_width([&]<int W>() { EXPECT_EQ(far, moved_far<W>(moved)) << "width " << W; });
     for (std::size_t i = 0; i < moved.slots.size(); ++i) {
       const Body<2>& body = moved.bodies[moved.slots[i]];
-      const double way = way_of(1.0 / 60.0, body, moved.motions[moved.slots[i]]);
+      const double way = moved.ways[moved.slots[i]];
       const bool is_far = (far >> i & 1u) != 0;
       EXPECT_TRUE(is_far || way <= 0.5 * body.thickness) << way << " of " << body.thickness;
       EXPECT_TRUE(!is_far || way >= 0.2 * body.thickness) << way << " of " << body.thickness;
