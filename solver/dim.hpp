@@ -162,6 +162,15 @@ template <class T>
            a[3] * b[3] - a[0] * b[0] - a[1] * b[1] - a[2] * b[2]}};
 }
 
+template <class T>
+[[gnu::always_inline]] inline Vec<2, T> conjugate(const Vec<2, T>& q) {
+  return {{q[0], -q[1]}};
+}
+template <class T>
+[[gnu::always_inline]] inline Vec<4, T> conjugate(const Vec<4, T>& q) {
+  return {{-q[0], -q[1], -q[2], q[3]}};
+}
+
 /// dq of a small turn [rad] in the world frame.
 template <class T>
 Vec<2, T> turn_derivative(const Vec<1, T>& turn, const Vec<2, T>& q) {
@@ -173,8 +182,8 @@ Vec<4, T> turn_derivative(const Vec<3, T>& turn, const Vec<4, T>& q) {
   return compose(Vec<4, T>{{half * turn[0], half * turn[1], half * turn[2], T(0.0f)}}, q);
 }
 
-template <int N>
-float length(const Vec<N>& a) {
+template <int N, class T>
+T length(const Vec<N, T>& a) {
   return sqrt(dot(a, a));
 }
 

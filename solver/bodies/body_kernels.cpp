@@ -1,4 +1,5 @@
 #include "solver/bodies/body_lanes.hpp"
+#include "solver/bodies/passing_lanes.hpp"
 #include "solver/bodies/turn_lanes.hpp"
 
 namespace cycloid::solver {

@@ -14,9 +14,16 @@ struct alignas(16) FlyingShape {
   float last;     ///< Number of its last vertex.
 };
 
+/// Pairs of bodies, by their slots.
+struct BodyPairs {
+  int count = 0;
+  std::uint32_t a[64];
+  std::uint32_t b[64];
+};
+
 /// What is done to each body by itself, W of them at a time: the same formulas as for one, so the
 /// same bits. Compiled for each width: body_kernels.cpp, body_kernels_avx2.cpp and
-/// body_kernels_avx512.cpp, from the text in body_lanes.hpp and turn_lanes.hpp.
+/// body_kernels_avx512.cpp, from the text in body_lanes.hpp, passing_lanes.hpp and turn_lanes.hpp.
 template <int W>
 struct BodyKernels {
   /// x' = x + h v,  q' = exp(h w) q, at unit length, to the bit as turn_by turns one.
@@ -31,6 +38,11 @@ struct BodyKernels {
   /// corner turned so far: of all others is_fast is false. @pre count <= 64.
   static std::uint64_t moved_far(float tick_s, const Body<2>* bodies, const std::uint32_t* slots,
                                  int count, const Motion<2>* motions);
+
+  /// A bit for each pair of bodies of which one may pass through the other in the tick, see
+  /// passing.hpp.
+  static std::uint64_t can_pass(float tick_s, const Body<2>* bodies, const Motion<2>* motions,
+                                const BodyPairs& pairs);
 
   /// The boxes of shapes: bounds_of, then along the flight. @pre every shape has one to four
   /// vertices.

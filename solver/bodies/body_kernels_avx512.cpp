@@ -2,6 +2,7 @@
 // says so. Every name that this file defines holds the width 528: see
 // constraints/contact_kernels_avx2.cpp.
 #include "solver/bodies/body_lanes.hpp"
+#include "solver/bodies/passing_lanes.hpp"
 #include "solver/bodies/turn_lanes.hpp"
 
 namespace cycloid::solver {

@@ -3,6 +3,8 @@
 #include <cstddef>
 
 #include "solver/bodies/body_kernels.hpp"
+#include "solver/bodies/passing.hpp"
+#include "solver/bodies/slots_in_lanes.hpp"
 #include "solver/constraints/motion_lanes.hpp"
 #include "solver/constraints/trig_lanes.hpp"
 
@@ -10,20 +12,6 @@ namespace cycloid::solver {
 
 /// The text of BodyKernels, for the files that compile it and no others. Every function is a
 /// template on W, so that those compiled for one instruction set have names of their own.
-
-/// The first `left` slots of a list, one in each lane, as many as there are. @returns which lanes
-/// are used: where that are not all, the others stand for the last slot again.
-template <int W>
-[[gnu::always_inline]] inline LaneBits take_slots(const std::uint32_t* list, int left,
-                                                  LaneIndices<W>& slots) {
-  if (left >= kLaneCount<W>) {
-    std::memcpy(slots, list, sizeof slots);
-    return kAllLanes<W>;
-  }
-  for (int lane = 0; lane < kLaneCount<W>; ++lane)
-    slots[lane] = list[lane < left ? lane : left - 1];
-  return (LaneBits{1} << left) - 1;
-}
 
 template <int W>
 [[gnu::always_inline]] inline void move_lanes(Lanes<W> h, MotionLanes<2, W>& motion) {
@@ -56,18 +44,15 @@ void BodyKernels<W>::move(float h, const std::uint32_t* slots, int count, Motion
   }
 }
 
-/// As is_slow has it in space (stages/list_meetings.cpp), with turn_bound in lanes, and squares in
-/// place of the root: nobody sees who is asked once more, as long as nobody fast is left out.
+/// As is_slow has it in space (stages/list_fast_bodies.cpp), with squares in place of the root:
+/// nobody sees who is asked once more, as long as nobody fast is left out.
 template <int W>
 [[gnu::always_inline]] inline LaneBits moved_far_in_lanes(Lanes<W> tick_s, Lanes<W> extent,
                                                           Lanes<W> thickness,
                                                           const MotionLanes<2, W>& motion) {
   using L = Lanes<W>;
   const L spun = tick_s * motion.spin[0];
-  const L sine = motion.delta_rotation[1];
-  const L turn = select(motion.delta_rotation[0] < L(0.0f), L(2.0f * kPi),
-                        L(1.6f) * max(sine, -sine) + L(1.0e-5f));
-  const L room = L(0.499f) * thickness - extent * turn;
+  const L room = L(0.499f) * thickness - extent * turn_bound(motion.delta_rotation);
   const auto is_slow = (room > L(0.0f)) & (spun * spun < L(9.0f)) &
                        (dot(motion.delta_position, motion.delta_position) < room * room);
   return kAllLanes<W> & ~bits_of<W>(is_slow);

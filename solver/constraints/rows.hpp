@@ -94,13 +94,6 @@ struct JointFrame {
 template <int D>
 using RowsFunction = void (*)(const JointFrame<D>& frame, JointRows<D>& rows);
 
-inline Rotation<2> conjugate(const Rotation<2>& q) {
-  return {{q[0], -q[1]}};
-}
-inline Rotation<3> conjugate(const Rotation<3>& q) {
-  return {{-q[0], -q[1], -q[2], q[3]}};
-}
-
 /// @param centre_offset  centre of b from centre of a: kept apart from the positions because far
 /// from the origin their difference has no digits left.
 template <int D>

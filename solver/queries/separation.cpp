@@ -1,5 +1,6 @@
 #include "solver/queries/separation.hpp"
 
+#include "solver/queries/four_points.hpp"
 #include "solver/queries/solid_queries.hpp"
 
 namespace cycloid::solver {
@@ -8,9 +9,10 @@ static void place_vertices(const Shape<2>& shape, const Rotation<2>& rotation,
                            const Vec<2>& position, const Polyhedra&, Core<2>& core) {
   core.count = shape.vertex_count;
   const std::uint32_t used = core.one_sided() ? 4 : core.count;
-  for (std::uint32_t i = 0; i < used; ++i) {
-    core.vertices[i] = position + rotate(rotation, shape.vertices[i]);
-    core.normals[i] = rotate(rotation, shape.normals[i]);
+  const FourPoints turn = four_of(rotation);
+  for (std::uint32_t i = 0; i < used; i += 4) {
+    store_four(four_of(position) + rotate(turn, load_four(shape.vertices, i)), i, core.vertices);
+    store_four(rotate(turn, load_four(shape.normals, i)), i, core.normals);
   }
 }
 
@@ -35,64 +37,105 @@ Core<2> core_of(const Probe<2>& probe, const Rotation<2>& rotation) {
 }
 
 /// The edge normal along which two cores are farthest apart.
-template <int D>
 struct CoreAxis {
   bool found = false;
   float separation = -3.0e38f;
-  Vec<D> normal = Vec<D>::zero();
+  Vec<2> normal = Vec<2>::zero();
   std::uint32_t vertex = 0;  ///< Of the other core, lowest along the normal.
 };
 
-/// @param faces  of `a`: how many of its edges have a normal that counts.
-template <int D>
-static CoreAxis<D> best_axis(const Core<D>& a, const Core<D>& b, std::uint32_t faces) {
-  CoreAxis<D> best;
-  for (std::uint32_t i = 0; i < faces; ++i) {
-    std::uint32_t lowest = 0;
-    float height = dot(a.normals[i], b.vertices[0] - a.vertices[i]);
+/// Four edges at a time. @param faces  of `a`: how many of its edges have a normal that counts.
+static CoreAxis best_axis(const Core<2>& a, const Core<2>& b, std::uint32_t faces) {
+  CoreAxis best;
+  for (std::uint32_t first = 0; first < faces; first += 4) {
+    const FourPoints normals = load_four_of(a.normals, first, faces);
+    const FourPoints vertices = load_four_of(a.vertices, first, faces);
+    FourFloats lowest = FourFloats(0.0f);
+    FourFloats height = dot(normals, four_of(b.vertices[0]) - vertices);
     for (std::uint32_t j = 1; j < b.count; ++j) {
-      const float other = dot(a.normals[i], b.vertices[j] - a.vertices[i]);
-      if (other < height) {
-        height = other;
-        lowest = j;
-      }
+      const FourFloats other = dot(normals, four_of(b.vertices[j]) - vertices);
+      lowest = select(other < height, FourFloats(static_cast<float>(j)), lowest);
+      height = min(other, height);
     }
-    if (height > best.separation) best = {true, height, a.normals[i], lowest};
+    for (std::uint32_t i = 0; i < 4 && first + i < faces; ++i)
+      if (height.raw[i] > best.separation)
+        best = {true, height.raw[i], a.normals[first + i],
+                static_cast<std::uint32_t>(lowest.raw[i])};
   }
   return best;
 }
 
 /// The nearest points of two cores that do not cross.
-template <int D>
 struct CorePair {
   float square = 3.0e38f;
-  Vec<D> on_a = Vec<D>::zero();
-  Vec<D> on_b = Vec<D>::zero();
+  Vec<2> on_a = Vec<2>::zero();
+  Vec<2> on_b = Vec<2>::zero();
 };
 
-/// The vertices of `points` against the edges of `edges`.
-template <int D>
-static void nearest_pair(const Core<D>& edges, const Core<D>& points, bool flipped,
-                         CorePair<D>& best) {
+/// A side of a core, or what stands for it where the core is a point or a line.
+struct CoreEdge {
+  Vec<2> from;
+  Vec<2> to;
+  Vec<2> span;
+  float square;
+};
+
+static CoreEdge edge_of(const Core<2>& core, std::uint32_t i) {
+  const Vec<2> from = core.vertices[i];
+  const Vec<2> to = core.vertices[core.next(i)];
+  const Vec<2> span = to - from;
+  return {from, to, span, dot(span, span)};
+}
+
+/// The points of an edge that are nearest to four others.
+static FourPoints feet_on(const CoreEdge& edge, const FourPoints& points) {
+  const FourFloats zero = FourFloats(0.0f);
+  const FourFloats one = FourFloats(1.0f);
+  const FourPoints span = four_of(edge.span);
+  FourFloats fraction = zero;
+  if (edge.square > 0.0f) {
+    const FourFloats along = dot(points - four_of(edge.from), span) / FourFloats(edge.square);
+    fraction = max(zero, min(along, one));
+  }
+  // The far end itself, not a sum that rounds beside it.
+  FourPoints feet = four_of(edge.from) + fraction * span;
+  for (int i = 0; i < 2; ++i) feet[i] = select(fraction < one, feet[i], FourFloats(edge.to[i]));
+  return feet;
+}
+
+/// The vertices of `points`, four at a time, against the edges of `edges`. Of pairs as near as one
+/// another that of the first edge is taken, and of those that of the first vertex.
+static void nearest_pair(const Core<2>& edges, const Core<2>& points, bool flipped,
+                         CorePair& best) {
   const std::uint32_t edge_count = edges.count > 2 ? edges.count : 1;
-  for (std::uint32_t i = 0; i < edge_count; ++i) {
-    const Vec<D> from = edges.vertices[i];
-    const Vec<D> span = edges.vertices[edges.next(i)] - from;
-    const float square = dot(span, span);
-    for (std::uint32_t j = 0; j < points.count; ++j) {
-      const Vec<D> point = points.vertices[j];
-      const float fraction =
-          square > 0.0f ? clamp(dot(point - from, span) / square, 0.0f, 1.0f) : 0.0f;
-      // The far end itself, not a sum that rounds beside it.
-      const Vec<D> foot = fraction < 1.0f ? from + fraction * span : edges.vertices[edges.next(i)];
-      const Vec<D> between = point - foot;
-      const float distance = dot(between, between);
-      if (distance >= best.square) continue;
-      best.square = distance;
-      best.on_a = flipped ? point : foot;
-      best.on_b = flipped ? foot : point;
+  float edge_of_best = 0.0f;
+  CorePair own;
+  for (std::uint32_t first = 0; first < points.count; first += 4) {
+    const FourPoints four = load_four_of(points.vertices, first, points.count);
+    FourFloats least = FourFloats(3.0e38f);
+    FourFloats edge = FourFloats(0.0f);
+    FourPoints nearest = four;
+    for (std::uint32_t i = 0; i < edge_count; ++i) {
+      const FourPoints feet = feet_on(edge_of(edges, i), four);
+      const FourPoints between = four - feet;
+      const FourFloats square = dot(between, between);
+      const auto is_nearer = square < least;
+      edge = select(is_nearer, FourFloats(static_cast<float>(i)), edge);
+      for (int k = 0; k < 2; ++k) nearest[k] = select(is_nearer, feet[k], nearest[k]);
+      least = min(square, least);
+    }
+    for (int lane = 0; lane < 4; ++lane) {
+      const float square = least.raw[lane];
+      const bool is_earlier = square == own.square && edge.raw[lane] < edge_of_best;
+      if (!(square < own.square || is_earlier)) continue;
+      edge_of_best = edge.raw[lane];
+      own = {square,
+             {{nearest[0].raw[lane], nearest[1].raw[lane]}},
+             {{four[0].raw[lane], four[1].raw[lane]}}};
     }
   }
+  if (!(own.square < best.square)) return;
+  best = flipped ? CorePair{own.square, own.on_b, own.on_a} : own;
 }
 
 /// Whether two lines of two points cross. Nearly parallel ones count as apart: their ends are
@@ -108,40 +151,38 @@ static bool lines_cross(const Core<2>& a, const Core<2>& b) {
   return along_a >= 0.0f && along_a <= 1.0f && along_b >= 0.0f && along_b <= 1.0f;
 }
 
-static bool cores_cross(const Core<2>& a, const Core<2>& b, float separation) {
+/// Whether along no edge normal two cores are apart, without the rule for one-sided shapes.
+static bool no_axis_parts(const Core<2>& a, const Core<2>& b) {
+  const auto all_faces = [](const Core<2>& core) { return core.count < 2 ? 0u : core.count; };
+  return best_axis(a, b, all_faces(a)).separation < 0.0f &&
+         best_axis(b, a, all_faces(b)).separation < 0.0f;
+}
+
+static bool cores_cross(const Core<2>& a, const Core<2>& b) {
   if (a.count < 2 && b.count < 2) return false;
-  if (a.count > 2 || b.count > 2) return separation < 0.0f;
+  if (a.count > 2 || b.count > 2) return no_axis_parts(a, b);
   // A point beside a line, or two lines: rounding may put every height below 0 far from any touch.
   return a.count == 2 && b.count == 2 && lines_cross(a, b);
 }
 
-/// The largest separation over all edge normals of both, without the rule for one-sided shapes.
-template <int D>
-static float axis_separation(const Core<D>& a, const Core<D>& b) {
-  const auto all_faces = [](const Core<D>& core) { return core.count < 2 ? 0u : core.count; };
-  return max(best_axis(a, b, all_faces(a)).separation, best_axis(b, a, all_faces(b)).separation);
-}
-
-template <int D>
-static Separation<D> across(const Core<D>& a, const Core<D>& b) {
-  CoreAxis<D> axis_a = best_axis(a, b, a.faces());
-  CoreAxis<D> axis_b = best_axis(b, a, b.faces());
+static Separation<2> across(const Core<2>& a, const Core<2>& b) {
+  CoreAxis axis_a = best_axis(a, b, a.faces());
+  CoreAxis axis_b = best_axis(b, a, b.faces());
   if (a.one_sided()) axis_b.found = false;
   if (b.one_sided() && !a.one_sided()) axis_a.found = false;
   const bool flipped = axis_b.found && (!axis_a.found || axis_b.separation > axis_a.separation);
-  Separation<D> result{};
-  CoreAxis<D> axis = flipped ? axis_b : axis_a;
-  const Core<D>& other = flipped ? a : b;
+  Separation<2> result{};
+  CoreAxis axis = flipped ? axis_b : axis_a;
+  const Core<2>& other = flipped ? a : b;
   const float reference_radius = flipped ? b.radius : a.radius;
   if (!axis.found) {
     axis.separation = 0.0f;
     axis.vertex = 0;
-    axis.normal = Vec<D>::zero();
-    axis.normal[1] = 1.0f;  // Concentric balls part upwards, as in `collide`.
+    axis.normal = {{0.0f, 1.0f}};  // Concentric balls part upwards, as in `collide`.
   }
-  const Vec<D> deepest = other.vertices[axis.vertex];
-  const Vec<D> on_reference = deepest + (reference_radius - axis.separation) * axis.normal;
-  const Vec<D> on_other = deepest - other.radius * axis.normal;
+  const Vec<2> deepest = other.vertices[axis.vertex];
+  const Vec<2> on_reference = deepest + (reference_radius - axis.separation) * axis.normal;
+  const Vec<2> on_other = deepest - other.radius * axis.normal;
   result.distance = axis.separation - (a.radius + b.radius);
   result.normal = flipped ? -axis.normal : axis.normal;
   result.point_a = flipped ? on_other : on_reference;
@@ -171,12 +212,12 @@ static Separation<D> from_half_space(const Core<D>& plane, const Core<D>& core) 
 }
 
 static Separation<2> separation_of_cores(const Core<2>& a, const Core<2>& b) {
-  if (cores_cross(a, b, axis_separation(a, b))) {
+  if (cores_cross(a, b)) {
     Separation<2> result = across(a, b);
     result.crossing = true;
     return result;
   }
-  CorePair<2> pair;
+  CorePair pair;
   nearest_pair(a, b, false, pair);
   nearest_pair(b, a, true, pair);
   const float distance = sqrt(pair.square);

@@ -1,6 +1,7 @@
 #include "solver/queries/time_of_impact.hpp"
 
 #include "solver/motion.hpp"
+#include "solver/queries/four_points.hpp"
 #include "solver/queries/separation.hpp"
 #include "solver/trig.hpp"
 
@@ -29,6 +30,27 @@ struct Mover {
   }
 };
 
+static void measure_arms(Mover<3>& mover) {
+  float reach = 0.0f;
+  for (std::uint32_t i = 0; i < mover.core.count; ++i) {
+    mover.arms[i] = length(mover.core.vertices[i] - mover.centre);
+    reach = max(reach, mover.arms[i]);
+  }
+  mover.reach = reach;
+}
+/// Of what stands behind the last vertex the arm is that of the first, which makes none longer.
+static void measure_arms(Mover<2>& mover) {
+  FourFloats reach = FourFloats(0.0f);
+  const std::uint32_t count = mover.core.count;
+  for (std::uint32_t first = 0; first < count; first += 4) {
+    const FourFloats arms =
+        length(load_four_of(mover.core.vertices, first, count) - four_of(mover.centre));
+    arms.store(&mover.arms[first]);
+    reach = max(reach, arms);
+  }
+  for (int lane = 0; lane < 4; ++lane) mover.reach = max(mover.reach, reach.raw[lane]);
+}
+
 template <int D>
 static Mover<D> mover_at(const Shape<D>& shape, const BodySweep<D>& sweep, const Vec<D>& offset,
                          float fraction, const Polyhedra& polyhedra) {
@@ -42,10 +64,7 @@ static Mover<D> mover_at(const Shape<D>& shape, const BodySweep<D>& sweep, const
                  length(sweep.turn),
                  {},
                  0.0f};
-  for (std::uint32_t i = 0; i < mover.core.count; ++i) {
-    mover.arms[i] = length(mover.core.vertices[i] - centre);
-    mover.reach = max(mover.reach, mover.arms[i]);
-  }
+  measure_arms(mover);
   return mover;
 }
 

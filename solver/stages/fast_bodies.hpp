@@ -1,16 +1,16 @@
 #pragma once
 
+#include "solver/bodies/passing.hpp"
+#include "solver/stages/may_touch.hpp"
 #include "solver/step_context.hpp"
 #include "solver/step_scratch.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
 
-/// Whether a body's final rotation does not say any more how far it turned in the tick.
 template <int D>
 bool winds(const StepContext<D>& context, const Motion<D>& motion) {
-  const Spin<D> spun = context.tick_s * motion.spin;
-  return dot(spun, spun) > kPi * kPi;
+  return winds(context.tick_s, motion.spin);
 }
 
 /// How far a body turns in the tick, and about what.
@@ -29,12 +29,14 @@ BodySweep<D> sweep_of(const StepContext<D>& context, const WorldState<D>& state,
           turn_in(context, motion)};
 }
 
-/// The most that a rotation may turn, rad, or more: without a function of trigonometry.
-inline float turn_bound(const Rotation<2>& q) {
-  return q[0] >= 0.0f ? 1.6f * abs(q[1]) + 1.0e-5f : 2.0f * kPi;
-}
-inline float turn_bound(const Rotation<3>& q) {
-  return q[3] >= 0.0f ? 3.2f * length(Vec<3>{{q[0], q[1], q[2]}}) + 1.0e-5f : 2.0f * kPi;
+/// The place in fast_bodies, + 1, of the body of a shape that may be stopped at the other; 0 where
+/// it is not fast, and where something pushes it on and the other yields.
+template <int D>
+std::uint32_t place_if_stopped_at(const WorldState<D>& state, const StepScratch<D>& scratch,
+                                  std::uint32_t shape, std::uint32_t other) {
+  const std::uint32_t place = scratch.fast_of_shape[shape];
+  if (place == 0 || !scratch.fast_bodies[place - 1].is_pushed) return place;
+  return responds(state.bodies[state.shapes[other].body].kind) ? 0 : place;
 }
 
 /// How far from what it meets a body stops, m: near enough that the next tick finds the contact,

@@ -9,104 +9,6 @@
 
 namespace cycloid::solver {
 
-/// Whether it moves so little in a tick that `is_fast` is false. Most do, and to be sure of it is
-/// cheaper than its way.
-static bool is_slow(const StepContext<3>& context, const Body<3>& body, const Motion<3>& motion) {
-  const Spin<3> spun = context.tick_s * motion.spin;
-  if (dot(spun, spun) > 9.0f) return false;
-  const float way = length(motion.delta_position) + body.extent * turn_bound(motion.delta_rotation);
-  return 1.001f * way < 0.5f * body.thickness;
-}
-
-/// Whether it moves so far in a tick that it could pass through something, or over its corner. What
-/// flies that far is asked for no turn.
-template <int D>
-static bool is_fast(const StepContext<D>& context, const Body<D>& body, const Motion<D>& motion) {
-  if (!responds(body.kind) || body.extent == 0.0f) return false;
-  const float flown = length(motion.delta_position);
-  const float enough = 0.5f * body.thickness;
-  return flown > enough || flown + body.extent * length(turn_in(context, motion)) > enough;
-}
-
-/// A bit for each of these bodies of which is_slow is not certain. @pre there are 64 at most.
-static std::uint64_t moved_far(const StepContext<3>& context, const WorldState<3>& state,
-                               std::span<const std::uint32_t> slots,
-                               const StepScratch<3>& scratch) {
-  std::uint64_t far = 0;
-  for (std::size_t i = 0; i < slots.size(); ++i)
-    if (!is_slow(context, state.bodies[slots[i]], scratch.motions[slots[i]]))
-      far |= std::uint64_t{1} << i;
-  return far;
-}
-static std::uint64_t moved_far(const StepContext<2>& context, const WorldState<2>& state,
-                               std::span<const std::uint32_t> slots,
-                               const StepScratch<2>& scratch) {
-  return at_width(widest_lanes(context.lanes), [&]<int W>() {
-    return BodyKernels<W>::moved_far(context.tick_s, state.bodies.data(), slots.data(),
-                                     static_cast<int>(slots.size()), scratch.motions.data());
-  });
-}
-
-template <int D>
-static void list_fast(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
-                      StepScratch<D>& scratch) {
-  const std::vector<std::uint32_t>& awake = scratch.awake_bodies;
-  scratch.fast_bodies.clear();
-  const auto list = [&](Range range, std::vector<FastBody>& fast) {
-    for (int begin = range.begin; begin < range.end; begin += kPairGrain) {
-      const auto slots = std::span(awake).subspan(
-          static_cast<std::size_t>(begin),
-          static_cast<std::size_t>(std::min(kPairGrain, range.end - begin)));
-      std::uint64_t far = moved_far(context, state, slots, scratch);
-      for (; far != 0; far &= far - 1) {
-        const std::uint32_t slot = slots[static_cast<std::size_t>(std::countr_zero(far))];
-        if (is_fast(context, state.bodies[slot], scratch.motions[slot])) fast.push_back({slot});
-      }
-    }
-  };
-  list_in_chunks(workers, static_cast<int>(awake.size()), kPairGrain, scratch.fast_chunks,
-                 scratch.fast_bodies, list);
-}
-
-/// Of the speed of what is pushed, how much at the least its contact shares.
-static constexpr float kPushShare = 0.25f;
-
-/// Marks the fast bodies that another one pushes along: through a contact that carries an impulse
-/// and itself moves on, along its normal, at a good part of the body's speed; and farther than
-/// contacts are made, so that to lose that way matters. Cards, of which the slowest is fast, would
-/// otherwise pass through one another.
-template <int D>
-static void mark_pushed(const StepContext<D>& context, StepScratch<D>& scratch) {
-  const float near = context.tuning.speculative_distance;
-  const auto mark = [&](std::uint32_t shape, float along, const Vec<D>& velocity) {
-    if (scratch.fast_of_shape[shape] == 0) return;
-    if (context.tick_s * along > near && along > kPushShare * length(velocity))
-      scratch.fast_bodies[scratch.fast_of_shape[shape] - 1].is_pushed = true;
-  };
-  for (const LiveContact<D>& live : scratch.live) {
-    const Contact<D>& contact = scratch.contacts[live.contact];
-    const std::uint32_t a = contact.shape_a;
-    const std::uint32_t b = contact.shape_b;
-    if ((scratch.fast_of_shape[a] | scratch.fast_of_shape[b]) == 0) continue;
-    float impulse = 0.0f;
-    for (std::uint32_t p = 0; p < contact.point_count; ++p)
-      impulse += contact.points[p].normal_impulse;
-    if (!(impulse > 0.0f)) continue;
-    const Manifold<D>& manifold = live.manifold;
-    const auto velocity_of = [&](std::uint32_t body, const Vec<D>& arm) {
-      const Motion<D>& motion = scratch.motions[body];
-      return motion.velocity + spin_cross(motion.spin, arm);
-    };
-    const Vec<D> velocity_a = velocity_of(live.body_a, manifold.points[0].anchor_a);
-    const Vec<D> velocity_b =
-        velocity_of(live.body_b, anchor_b_of(manifold.points[0], live.between));
-    const float along_a = dot(manifold.normal, velocity_a);
-    const float along_b = dot(manifold.normal, velocity_b);
-    mark(b, min(along_a, along_b), velocity_b);
-    mark(a, min(-along_a, -along_b), velocity_a);
-  }
-}
-
 /// The box of all places of a shape on its way, m, and of what it would stop at. Its corners leave
 /// the chords of their arcs by at most an eighth of the square of the turn.
 template <int D>
@@ -167,19 +69,16 @@ template <int D>
 static void mark_ways(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch) {
   const PairCache<D>& cache = scratch.kept->pair_cache;
-  scratch.fast_of_shape.assign(state.shapes.size(), 0);
   scratch.ways.resize(state.shapes.size());
   scratch.way_is.assign(state.shapes.size(), WayIs::kUnknown);
   scratch.leaving.clear();
   scratch.searching.clear();
-  for (std::uint32_t place = 0; place < scratch.fast_bodies.size(); ++place) {
-    const std::uint32_t slot = scratch.fast_bodies[place].slot;
-    const Body<D>& body = state.bodies[slot];
-    const Motion<D>& motion = scratch.motions[slot];
+  for (const FastBody& fast : scratch.fast_bodies) {
+    const Body<D>& body = state.bodies[fast.slot];
+    const Motion<D>& motion = scratch.motions[fast.slot];
     const bool stays =
         stays_in_boxes(context, body, motion, stop_distance(context.tuning, body.thickness));
     for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
-      scratch.fast_of_shape[s] = place + 1;
       if (stays && cache.active[s] != 0) continue;
       find_way(context, state, s, scratch);
       scratch.way_is[s] = WayIs::kListed;
@@ -192,13 +91,90 @@ static void mark_ways(const StepContext<D>& context, const WorldState<D>& state,
   }
 }
 
-/// The ways of those shapes of fast bodies that are in a pair and have none yet.
+/// Whether a fast body of two shapes may be stopped at the other.
 template <int D>
-static void find_ways_of_pairs(const StepContext<D>& context, const WorldState<D>& state,
-                               Workers& workers, StepScratch<D>& scratch) {
+static bool may_stop(const WorldState<D>& state, const StepScratch<D>& scratch,
+                     const ShapePair& pair) {
+  const auto [a, b] = pair;
+  return place_if_stopped_at(state, scratch, a, b) != 0 ||
+         place_if_stopped_at(state, scratch, b, a) != 0;
+}
+
+template <int D>
+static PassingBody<D, float> passing_body(const WorldState<D>& state, const StepScratch<D>& scratch,
+                                          std::uint32_t slot) {
+  const Body<D>& body = state.bodies[slot];
+  const Motion<D>& motion = scratch.motions[slot];
+  const float thickness = responds(body.kind) ? body.thickness : kUnyielding;
+  return {body.position, body.extent,           thickness,
+          motion.spin,   motion.delta_position, motion.delta_rotation};
+}
+
+/// A bit for each pair of bodies of which one may pass through the other in the tick.
+static std::uint64_t who_can_pass(const StepContext<3>& context, const WorldState<3>& state,
+                                  const StepScratch<3>& scratch, const BodyPairs& pairs) {
+  std::uint64_t passing = 0;
+  for (int i = 0; i < pairs.count; ++i) {
+    const float passes = can_pass(context.tick_s, passing_body(state, scratch, pairs.a[i]),
+                                  passing_body(state, scratch, pairs.b[i]));
+    if (passes > 0.0f) passing |= std::uint64_t{1} << i;
+  }
+  return passing;
+}
+static std::uint64_t who_can_pass(const StepContext<2>& context, const WorldState<2>& state,
+                                  const StepScratch<2>& scratch, const BodyPairs& pairs) {
+  return at_width(widest_lanes(context.lanes), [&]<int W>() {
+    constexpr int kFew = kFewLanes<W>;
+    const auto ask = pairs.count > kFew ? BodyKernels<W>::can_pass : BodyKernels<kFew>::can_pass;
+    return ask(context.tick_s, state.bodies.data(), scratch.motions.data(), pairs);
+  });
+}
+
+/// Appends those pairs whose bodies can pass one another. @pre there are kPairGrain at most.
+template <int D>
+static void append_passing(const StepContext<D>& context, const WorldState<D>& state,
+                           const StepScratch<D>& scratch, std::span<const ShapePair> pairs,
+                           std::vector<ShapePair>& passing) {
+  if (pairs.empty()) return;
+  BodyPairs bodies;
+  for (const ShapePair& pair : pairs) {
+    bodies.a[bodies.count] = state.shapes[pair.shape_a].body;
+    bodies.b[bodies.count++] = state.shapes[pair.shape_b].body;
+  }
+  std::uint64_t who = who_can_pass(context, state, scratch, bodies);
+  for (; who != 0; who &= who - 1)
+    passing.push_back(pairs[static_cast<std::size_t>(std::countr_zero(who))]);
+}
+
+/// Appends to `out` those of the pairs of which a fast body may be stopped that can pass through
+/// the other.
+template <int D>
+static void list_passing(const StepContext<D>& context, const WorldState<D>& state,
+                         const std::vector<ShapePair>& pairs, Workers& workers,
+                         StepScratch<D>& scratch, std::vector<ShapePair>& out) {
+  constexpr int kGrain = 16 * kPairGrain;
+  const auto list = [&](Range range, std::vector<ShapePair>& passing) {
+    ShapePair waiting[kPairGrain];
+    std::size_t count = 0;
+    for (int i = range.begin; i < range.end; ++i) {
+      waiting[count] = pairs[static_cast<std::size_t>(i)];
+      count += may_stop(state, scratch, waiting[count]) ? 1 : 0;
+      if (count < kPairGrain) continue;
+      append_passing<D>(context, state, scratch, waiting, passing);
+      count = 0;
+    }
+    append_passing<D>(context, state, scratch, std::span(waiting).first(count), passing);
+  };
+  list_in_chunks(workers, static_cast<int>(pairs.size()), kGrain, scratch.pair_chunks, out, list);
+}
+
+/// The ways of those shapes of fast bodies that are in such a pair and have none yet.
+template <int D>
+static void find_ways(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                      StepScratch<D>& scratch) {
   std::vector<std::uint32_t>& wanted = scratch.looking;
   wanted.clear();
-  for (const ShapePair& pair : scratch.pairs)
+  for (const ShapePair& pair : scratch.passing)
     for (const std::uint32_t s : {pair.shape_a, pair.shape_b}) {
       if (scratch.fast_of_shape[s] == 0 || scratch.way_is[s] != WayIs::kUnknown) continue;
       scratch.way_is[s] = WayIs::kListed;
@@ -236,54 +212,65 @@ static void search(const WorldState<D>& state, const StepScratch<D>& scratch, st
   scratch.kept->pair_cache.fat.query(way, meet);
 }
 
-/// Appends the meetings among these pairs that no search finds.
+/// Appends what shapes that search meet on their ways.
 template <int D>
-static void list_among(const std::vector<ShapePair>& pairs, Workers& workers,
-                       StepScratch<D>& scratch) {
+static void search_all(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch,
+                       std::vector<ShapePair>& out) {
+  const std::vector<std::uint32_t>& searching = scratch.searching;
+  const auto list = [&](Range range, std::vector<ShapePair>& found) {
+    for (int i = range.begin; i < range.end; ++i)
+      search(state, scratch, searching[static_cast<std::size_t>(i)], found);
+  };
+  list_in_chunks(workers, static_cast<int>(searching.size()), kPairGrain, scratch.pair_chunks, out,
+                 list);
+}
+
+/// Appends the meetings among those pairs that no search finds.
+template <int D>
+static void list_among_passing(Workers& workers, StepScratch<D>& scratch) {
   constexpr int kGrain = 1024;
   const auto is_listed = [&](std::uint32_t fast, std::uint32_t other) {
     return meets(scratch, WayIs::kListed, fast, other) &&
            !meets(scratch, WayIs::kSearched, other, fast);
   };
   const auto list = [&](Range range, std::vector<ShapePair>& found) {
-    append_if(pairs, range, found, [&](const ShapePair& pair) {
+    append_if(scratch.passing, range, found, [&](const ShapePair& pair) {
       return is_listed(pair.shape_a, pair.shape_b) || is_listed(pair.shape_b, pair.shape_a);
     });
   };
-  list_in_chunks(workers, static_cast<int>(pairs.size()), kGrain, scratch.pair_chunks,
+  list_in_chunks(workers, static_cast<int>(scratch.passing.size()), kGrain, scratch.pair_chunks,
                  scratch.meetings, list);
 }
 
-/// The pairs of shapes of which one is of a fast body and meets the box of the other on its way.
+/// The pairs of shapes of which one is of a fast body that may be stopped at the other, can pass
+/// through it, and meets its box on its way.
 ///
-/// Reads motions, bodies, shapes and the boxes, pairs and candidates of find_pairs; writes the fast
-/// bodies, ways and the meetings. Which pairs those are depends on boxes and ways alone: a box has
-/// its pairs, and a fat box its candidates, wherever it holds the way; so what is cached shows only
-/// in their order, which changes no least fraction.
+/// Reads fast bodies, motions, bodies, shapes and the boxes, pairs and candidates of find_pairs;
+/// writes ways and the meetings. Which pairs those are depends on bodies, boxes and ways alone: a
+/// box has its pairs, and a fat box its candidates, wherever it holds the way; so what is cached
+/// shows only in their order, which changes no least fraction.
 template <int D>
 void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch) {
   // So many candidates are passed by in the time of one search.
   constexpr std::size_t kCandidatesPerSearch = 100;
   scratch.meetings.clear();
-  list_fast(context, state, workers, scratch);
   if (scratch.fast_bodies.empty()) return;
   mark_ways(context, state, scratch);
-  mark_pushed(context, scratch);
-  find_ways_of_pairs(context, state, workers, scratch);
   const std::vector<ShapePair>& candidates = scratch.kept->pair_cache.candidates;
   std::vector<std::uint32_t>& searching = scratch.searching;
   const bool many_leave = scratch.leaving.size() * kCandidatesPerSearch > candidates.size();
   if (!many_leave)
     searching.insert(searching.end(), scratch.leaving.begin(), scratch.leaving.end());
   for (const std::uint32_t s : searching) scratch.way_is[s] = WayIs::kSearched;
-  list_among(many_leave ? candidates : scratch.pairs, workers, scratch);
-  const auto search_all = [&](Range range, std::vector<ShapePair>& pairs) {
-    for (int i = range.begin; i < range.end; ++i)
-      search(state, scratch, searching[static_cast<std::size_t>(i)], pairs);
-  };
-  list_in_chunks(workers, static_cast<int>(searching.size()), kPairGrain, scratch.pair_chunks,
-                 scratch.meetings, search_all);
+  std::vector<ShapePair>& passing = scratch.passing;
+  passing.clear();
+  list_passing(context, state, many_leave ? candidates : scratch.pairs, workers, scratch, passing);
+  find_ways(context, state, workers, scratch);
+  list_among_passing(workers, scratch);
+  passing.clear();
+  search_all(state, workers, scratch, passing);
+  list_passing(context, state, passing, workers, scratch, scratch.meetings);
 }
 
 template void list_meetings(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);

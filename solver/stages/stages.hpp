@@ -118,6 +118,9 @@ void store_impulses(const Lot& lot, Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void store_pins(StepScratch<D>& scratch);
 template <int D>
+void list_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                      StepScratch<D>& scratch);
+template <int D>
 void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch);
 template <int D>

@@ -36,35 +36,6 @@ static bool stays_clear(const Traveller<D>& a, const Traveller<D>& b, float reac
   return dot(nearest, nearest) > reach * reach;
 }
 
-/// The farthest that a point of b may move past a in the tick, m, seen from a, which turns: the
-/// centre of b along a curve that leaves its chord by at most an eighth of its greatest
-/// acceleration (w^2 r across, 2 w v along), and b by its turn less that of a. @pre neither winds.
-template <int D>
-static float way_past(const Traveller<D>& a, const Traveller<D>& b) {
-  const Vec<D> from = b.start.position - a.start.position;
-  const Vec<D> way = b.motion.delta_position - a.motion.delta_position;
-  const Vec<D> seen = rotate_back(a.motion.delta_rotation, from + way) - from;
-  const float turn = turn_bound(a.motion.delta_rotation);
-  const float size = length(way);
-  const float bulge = 0.125f * turn * (turn * (length(from) + size) + 2.0f * size);
-  const Rotation<D> relative = compose(conjugate(a.motion.delta_rotation), b.motion.delta_rotation);
-  return length(seen) + bulge + b.start.extent * turn_bound(relative);
-}
-
-/// Whether two bodies move past one another by so little that neither can pass through the other,
-/// or over its corner: half the thickness of the thinner one, or of the one that yields. What flies
-/// side by side does, however fast: stopped at its neighbours a crowd would lose its way for
-/// nothing, and what drives it from behind would run over it.
-template <int D>
-static bool cannot_pass(const StepContext<D>& context, const Traveller<D>& a,
-                        const Traveller<D>& b) {
-  if (winds(context, a.motion) || winds(context, b.motion)) return false;
-  const float thin_a = responds(a.start.kind) ? a.start.thickness : b.start.thickness;
-  const float thin_b = responds(b.start.kind) ? b.start.thickness : a.start.thickness;
-  const float enough = 0.5f * min(thin_a, thin_b);
-  return way_past(a, b) <= enough || way_past(b, a) <= enough;
-}
-
 /// Whether a body stays farther than its reach above a half-space, which rests: at both ends of its
 /// way and so between them.
 template <int D>
@@ -131,7 +102,6 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
   if (a.kind == ShapeKind::kHalfSpace ? stays_above(from, a, to, reach)
                                       : stays_clear(from, to, reach))
     return 1.0f;
-  if (cannot_pass(context, from, to)) return 1.0f;
   const BodySweep<D> sweep_a = sweep_of(context, state, scratch, a.body);
   const BodySweep<D> sweep_b = sweep_of(context, state, scratch, b.body);
   const float tolerance = 0.25f * target;
@@ -142,16 +112,11 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
   return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
 }
 
-/// The fast body of a shape where it may be stopped at the other: null where there is none, and
-/// where something pushes it on and the other yields.
 template <int D>
 static FastBody* stopped_at(const WorldState<D>& state, StepScratch<D>& scratch,
                             std::uint32_t shape, std::uint32_t other) {
-  const std::uint32_t place = scratch.fast_of_shape[shape];
-  if (place == 0) return nullptr;
-  FastBody& fast = scratch.fast_bodies[place - 1];
-  const bool yields = responds(state.bodies[state.shapes[other].body].kind);
-  return fast.is_pushed && yields ? nullptr : &fast;
+  const std::uint32_t place = place_if_stopped_at(state, scratch, shape, other);
+  return place == 0 ? nullptr : &scratch.fast_bodies[place - 1];
 }
 
 /// Continuous collision: a fast body ends the tick where it first meets what it did not touch
@@ -166,6 +131,7 @@ template <int D>
 void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
   if (context.tuning.continuous == 0) return;
+  list_fast_bodies(context, state, workers, scratch);
   list_meetings(context, state, workers, scratch);
   const std::vector<ShapePair>& meetings = scratch.meetings;
   scratch.fractions.resize(meetings.size());

@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "solver/bodies/passing.hpp"
 #include "solver/collision/pair_cache.hpp"
 #include "solver/instruction_sets.hpp"
 #include "solver/shapes.hpp"
@@ -201,6 +202,50 @@ TEST(BodyKernels, FindWhoMayHaveMovedByHalfItsThicknessAtEveryWidth) {
   }
   EXPECT_GT(far_count, 2000);
   EXPECT_GT(near_count, 2000);
+}
+
+/// Half of the bodies do not yield, and some turn too far to tell.
+static PassingBody<2, float> one_passing(const MovedBodies& moved, std::uint32_t slot) {
+  const Body<2>& body = moved.bodies[slot];
+  const Motion<2>& motion = moved.motions[slot];
+  const bool yields = body.kind == BodyKind::kDynamic || body.kind == BodyKind::kParticle;
+  return {body.position, body.extent,           yields ? body.thickness : kUnyielding,
+          motion.spin,   motion.delta_position, motion.delta_rotation};
+}
+
+TEST(BodyKernels, FindWhoCanPassThroughTheOtherAtEveryWidth) {
+  constexpr float kTick = 1.0f / 60.0f;
+  constexpr BodyKind kKinds[4] = {BodyKind::kStatic, BodyKind::kKinematic, BodyKind::kDynamic,
+                                  BodyKind::kParticle};
+  std::mt19937 random(20261128);
+  int passing_count = 0;
+  int asked_count = 0;
+  for (std::uint32_t round = 0; round < 320; ++round) {
+    MovedBodies moved = drawn_moved(random, 1 + round % 64);
+    for (Body<2>& body : moved.bodies) {
+      body.kind = kKinds[random() % 4];
+      body.position = {{drawn(random, 3.0f), drawn(random, 3.0f)}};
+    }
+    BodyPairs pairs;
+    std::uint64_t expected = 0;
+    for (const std::uint32_t slot : moved.slots) {
+      pairs.a[pairs.count] = slot - 1;
+      pairs.b[pairs.count] = slot;
+      const float passes = can_pass(kTick, one_passing(moved, slot - 1), one_passing(moved, slot));
+      if (passes > 0.0f) expected |= std::uint64_t{1} << pairs.count;
+      passing_count += passes > 0.0f ? 1 : 0;
+      ++asked_count;
+      ++pairs.count;
+    }
+    for_each_width([&]<int W>() {
+      EXPECT_EQ(expected,
+                BodyKernels<W>::can_pass(kTick, moved.bodies.data(), moved.motions.data(), pairs))
+          << "width " << W << ", round " << round;
+    });
+    ASSERT_FALSE(HasFailure());
+  }
+  EXPECT_GT(passing_count, 1000);
+  EXPECT_GT(asked_count - passing_count, 1000);
 }
 
 }  // namespace cycloid::solver
