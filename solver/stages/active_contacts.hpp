@@ -15,20 +15,22 @@ template <int D>
 class OldContacts {
  public:
   OldContacts(const WorldState<D>& state, const ActiveContacts& active)
-      : contacts_(state.contacts), active_(active) {}
-  std::uint32_t size() const {
-    return static_cast<std::uint32_t>(active_.are_all ? contacts_.size() : active_.places.size());
-  }
+      : contacts_(state.contacts.data()),
+        places_(active.are_all ? nullptr : active.places.data()),
+        size_(static_cast<std::uint32_t>(active.are_all ? state.contacts.size()
+                                                        : active.places.size())) {}
+  std::uint32_t size() const { return size_; }
   /// Its place among all contacts of the state.
-  std::uint32_t place(std::uint32_t i) const { return active_.are_all ? i : active_.places[i]; }
+  std::uint32_t place(std::uint32_t i) const { return places_ == nullptr ? i : places_[i]; }
   const Contact<D>& operator[](std::uint32_t i) const { return contacts_[place(i)]; }
   std::uint64_t key(std::uint32_t i) const { return key_of((*this)[i]); }
   /// The first whose key is not below.
   std::uint32_t lower_bound(std::uint64_t key) const;
 
  private:
-  const std::vector<Contact<D>>& contacts_;
-  const ActiveContacts& active_;
+  const Contact<D>* contacts_;
+  const std::uint32_t* places_;  ///< Null where they are all.
+  std::uint32_t size_;
 };
 
 /// Finds out which contacts rest, where that is not known. @pre find_pairs.
