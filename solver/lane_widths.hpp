@@ -61,4 +61,12 @@ decltype(auto) at_width(int width, Act&& act) {
   }
 }
 
+/// The same for the widest that this processor has, where the width shows in no result.
+template <class Act>
+decltype(auto) at_widest(Act&& act) {
+  if (has_avx512_kernels()) return act.template operator()<kAvx512Lanes>();
+  if (has_avx2_kernels()) return act.template operator()<kAvx2Lanes>();
+  return act.template operator()<4>();
+}
+
 }  // namespace cycloid::solver

@@ -3,7 +3,6 @@
 #include <cstdint>
 
 #include "solver/collision/bounds_row.hpp"
-#include "solver/instruction_sets.hpp"
 #include "solver/lanes.hpp"
 
 namespace cycloid::solver {
@@ -59,14 +58,6 @@ void for_each_found(const Bounds<D>& box, Search&& search_on, Found&& act) {
     goes_on = search_on(search, found);
     for (int i = 0; i < found.count; ++i) act(found.numbers[i]);
   }
-}
-
-/// Calls act.template operator()<W>() for the widest kernels that this processor has.
-template <class Act>
-decltype(auto) with_widest_bounds(Act&& act) {
-  if (has_avx512_kernels()) return act.template operator()<kAvx512Lanes>();
-  if (has_avx2_kernels()) return act.template operator()<kAvx2Lanes>();
-  return act.template operator()<4>();
 }
 
 }  // namespace cycloid::solver

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 
+#include "solver/lane_widths.hpp"
+
 namespace cycloid::solver {
 
 /// Of each byte its bits with D - 1 zeros behind each.
@@ -77,8 +79,7 @@ void BoundsTree<D>::build_rows() {
 template <int D>
 bool BoundsTree<D>::search_on(BoundsSearch<D>& search, FoundBoxes& found) const {
   const RowsOfTree<D> tree{rows_.data(), first_row_, levels_};
-  return with_widest_bounds(
-      [&]<int W>() { return BoundsKernels<D, W>::search_tree(tree, search, found); });
+  return at_widest([&]<int W>() { return BoundsKernels<D, W>::search_tree(tree, search, found); });
 }
 
 template class BoundsTree<2>;

@@ -1,5 +1,7 @@
 #include "solver/collision/box_set.hpp"
 
+#include "solver/lane_widths.hpp"
+
 namespace cycloid::solver {
 
 static constexpr std::uint32_t kBoxesOfRow = BoundsRow<2>::kBoxes;
@@ -106,7 +108,7 @@ void BoxSet<D>::settle() {
 template <int D>
 bool BoxSet<D>::search_rows(BoundsSearch<D>& search, FoundBoxes& found) const {
   const auto count = static_cast<int>(rows_.size());
-  return with_widest_bounds([&]<int W>() {
+  return at_widest([&]<int W>() {
     return BoundsKernels<D, W>::search_rows(rows_.data(), count, search, found);
   });
 }

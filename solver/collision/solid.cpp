@@ -1,5 +1,9 @@
 #include "solver/collision/solid.hpp"
 
+#include <algorithm>
+
+#include "solver/transpose.hpp"
+
 namespace cycloid::solver {
 
 /// Faces, edges and corners of a solid whose shape is known beforehand.
@@ -88,15 +92,39 @@ static void place_box(const Shape<3>& shape, const Rotation<3>& rotation, Solid&
   }
 }
 
+/// Three floats of each record, from its beginning, moved four records at a time.
+template <class Record, class Move>
+static void move_all(std::span<const Record> records, Move&& move, Vec<3>* moved) {
+  using Four = Lanes<4>;
+  const std::size_t count = records.size();
+  for (std::size_t i = 0; i < count; i += 4) {
+    LaneIndices<4> from;  // Behind the last one it stands again.
+    for (std::size_t lane = 0; lane < 4; ++lane)
+      from[lane] = static_cast<std::uint32_t>(std::min(i + lane, count - 1));
+    Four columns[4];
+    gather_floats<4>(records.data(), from, 0, columns);
+    const Vec<3, Four> at = move(Vec<3, Four>{{columns[0], columns[1], columns[2]}});
+    Quad rows[4] = {at[0].raw, at[1].raw, at[2].raw, at[2].raw};
+    transpose(rows);
+    for (std::size_t lane = 0; lane < std::min<std::size_t>(4, count - i); ++lane)
+      std::memcpy(&moved[i + lane], &rows[lane], sizeof(Vec<3>));
+  }
+}
+
 static void place_hull(const Shape<3>& shape, const Polyhedra& polyhedra,
                        const Rotation<3>& rotation, Solid& solid) {
+  using Four = Lanes<4>;
   const PolyhedronView view = view_of(polyhedra, shape.polyhedron);
   set_topology(view, solid);
   const Rotation<3> turned = compose(rotation, shape.rotation);
-  for (std::size_t i = 0; i < view.vertices.size(); ++i)
-    solid.vertices[i] = solid.centre + rotate(turned, view.vertices[i].position);
-  for (std::size_t i = 0; i < view.faces.size(); ++i)
-    solid.normals[i] = rotate(turned, view.faces[i].normal);
+  const Rotation<3, Four> turn = {{turned[0], turned[1], turned[2], turned[3]}};
+  const Vec<3, Four> centre = {{solid.centre[0], solid.centre[1], solid.centre[2]}};
+  move_all(
+      view.vertices, [&](const Vec<3, Four>& at) { return centre + rotate(turn, at); },
+      solid.vertices.data());
+  move_all(
+      view.faces, [&](const Vec<3, Four>& normal) { return rotate(turn, normal); },
+      solid.normals.data());
 }
 
 static void place_triangle(const Shape<3>& shape, const Rotation<3>& rotation,

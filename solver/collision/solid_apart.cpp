@@ -1,9 +1,7 @@
 #include "solver/collision/solid_apart.hpp"
 
-#include <algorithm>
-#include <cstddef>
-
-#include "solver/transpose.hpp"
+#include "solver/collision/solid_kernels.hpp"
+#include "solver/lane_widths.hpp"
 
 namespace cycloid::solver {
 
@@ -36,41 +34,11 @@ static Plane box_face_towards(const Vec<3>& half, const Vec<3>& point) {
   return plane;
 }
 
-/// The first four floats of kFour records from `begin` on, by number of the float; behind the last
-/// record it stands again.
-static constexpr int kFour = 4;
-using FourLanes = Lanes<kFour>;
-template <class Record>
-static void load_four(std::span<const Record> records, std::size_t begin, FourLanes (&columns)[4]) {
-  Quad rows[kFour];
-  for (std::size_t r = 0; r < kFour; ++r)
-    rows[r] = load_floats(records[std::min(begin + r, records.size() - 1)], 0);
-  transpose(rows);
-  for (int i = 0; i < 4; ++i) columns[i] = FourLanes(rows[i]);
-}
-
 /// The face of a hull that a point is farthest outside of: of equals the first.
 static Plane hull_face_towards(std::span<const PolyhedronFace> faces, const Vec<3>& point) {
-  static_assert(offsetof(PolyhedronFace, offset) == 3 * sizeof(float));
-  FourLanes farthest(-3.4e38f);
-  FourLanes at(0.0f);
-  for (std::size_t i = 0; i < faces.size(); i += kFour) {
-    FourLanes plane[4];
-    load_four(faces, i, plane);
-    const FourLanes outside =
-        plane[0] * point[0] + plane[1] * point[1] + plane[2] * point[2] - plane[3];
-    at = select(outside > farthest, FourLanes(static_cast<float>(i)), at);
-    farthest = max(outside, farthest);
-  }
-  int best = 0;
-  for (int lane = 1; lane < kFour; ++lane) {
-    const bool is_first =
-        at.raw[lane] + static_cast<float>(lane) < at.raw[best] + static_cast<float>(best);
-    if (farthest.raw[lane] > farthest.raw[best] ||
-        (farthest.raw[lane] == farthest.raw[best] && is_first))
-      best = lane;
-  }
-  const auto face = static_cast<std::size_t>(at.raw[best]) + static_cast<std::size_t>(best);
+  const auto count = static_cast<std::uint32_t>(faces.size());
+  const std::uint32_t face =
+      at_widest([&]<int W>() { return SolidKernels<W>::face_towards(faces.data(), count, point); });
   return {faces[face].normal, faces[face].offset};
 }
 
@@ -86,17 +54,10 @@ static float reach_against(const OwnSolid& solid, const Vec<3>& direction) {
     for (int k = 0; k < 3; ++k) reach += abs(direction[k]) * solid.shape.half[k];
     return reach;
   }
-  static_assert(sizeof(PolyhedronVertex) == sizeof(Quad));
-  FourLanes lowest(0.0f);
-  for (std::size_t i = 0; i < solid.view.vertices.size(); i += kFour) {
-    FourLanes vertex[4];
-    load_four(solid.view.vertices, i, vertex);
-    lowest =
-        min(lowest, vertex[0] * direction[0] + vertex[1] * direction[1] + vertex[2] * direction[2]);
-  }
-  float least = lowest.raw[0];
-  for (int lane = 1; lane < kFour; ++lane) least = min(least, lowest.raw[lane]);
-  return -least;
+  const auto count = static_cast<std::uint32_t>(solid.view.vertices.size());
+  const PolyhedronVertex* corners = solid.view.vertices.data();
+  return -at_widest(
+      [&]<int W>() { return SolidKernels<W>::lowest_along(corners, count, direction); });
 }
 
 /// @param to_b  from the middle of a to that of b, in the frame of the collision, m.

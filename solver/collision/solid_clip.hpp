@@ -1,6 +1,6 @@
 #pragma once
 
-#include "solver/collision/solid.hpp"
+#include "solver/collision/solid_kernels.hpp"
 
 namespace cycloid::solver {
 
@@ -53,13 +53,6 @@ struct EdgePair {
   float separation;  ///< Of the solids along it, m.
 };
 
-/// A face of a solid as an axis.
-struct FaceAxis {
-  std::uint32_t face = 0;
-  std::uint32_t support = 0;  ///< The other's vertex that is deepest below the face.
-  float separation = kNoSeparation;
-};
-
 /// A pair of edges as an axis. Without one the separation is kNoSeparation.
 struct EdgeAxis {
   std::uint32_t edge_a = 0;
@@ -70,8 +63,8 @@ struct EdgeAxis {
 
 /// The best axes of two solids.
 struct Axes {
-  FaceAxis faces[2];  ///< Of a and of b.
-  EdgeAxis edges;     ///< Only where it beats both faces.
+  FaceAxis faces[2] = {{0, 0, kNoSeparation}, {0, 0, kNoSeparation}};  ///< Of a and of b.
+  EdgeAxis edges;  ///< Only where it beats both faces.
 
   /// Whether the face of b is the better one.
   bool on_b(const AxisTolerance& tolerance) const {

@@ -1,133 +1,38 @@
-#include <bit>
-
 #include "solver/collision/solid_clip.hpp"
-#include "solver/lanes.hpp"
+#include "solver/lane_widths.hpp"
 
 namespace cycloid::solver {
 
-/// So many faces, corners or arcs are tried at once.
+/// So many faces or arcs are tried at once.
 static constexpr int kWide = 4;
 using WideLanes = Lanes<kWide>;
 
-/// Vectors, kMost at the most, of which kWide are at hand from any place on: behind the last one
-/// comes what is not looked at.
+/// The dot products with a vector of kWide others, from `i` on.
 template <std::uint32_t kMost>
-struct WideVectors {
-  float part[3][kMost + kWide];
-
-  Vec<3> at(std::uint32_t i) const { return {{part[0][i], part[1][i], part[2][i]}}; }
-  void set(std::uint32_t i, const Vec<3>& v) {
-    for (int k = 0; k < 3; ++k) part[k][i] = v[k];
-  }
-  WideLanes dot_at(std::uint32_t i, const Vec<3>& v) const {
-    return WideLanes::load(&part[0][i]) * v[0] + WideLanes::load(&part[1][i]) * v[1] +
-           WideLanes::load(&part[2][i]) * v[2];
-  }
-};
-
-/// Bits of places from i on, as far as there are `count`.
-static std::uint32_t bits_before(std::uint32_t bits, std::uint32_t i, std::uint32_t count) {
-  return count - i < kWide ? bits & ((1u << (count - i)) - 1) : bits;
+static WideLanes dots_at(const WideVectors<kMost>& vectors, std::uint32_t i, const Vec<3>& with) {
+  return WideLanes::load(&vectors.part[0][i]) * with[0] +
+         WideLanes::load(&vectors.part[1][i]) * with[1] +
+         WideLanes::load(&vectors.part[2][i]) * with[2];
 }
 
-/// Of kWide numbers from `heights` on, those that are above `threshold`.
-static std::uint32_t bits_above(const WideLanes& heights, float threshold) {
-  return bits_of<kWide>(heights > WideLanes(threshold));
+WidePlanes::WidePlanes(const Solid& solid) : count(solid.face_count) {
+  for (std::uint32_t face = 0; face < count; ++face) {
+    normals.set(face, solid.normals[face]);
+    offsets[face] = solid.offset(face);
+  }
+  for (std::uint32_t i = count; i < in_whole_lanes(count); ++i) {
+    normals.set(i, Vec<3>::zero());
+    offsets[i] = 3.0e38f;
+  }
 }
 
-/// The faces of a solid as planes.
-struct WidePlanes {
-  explicit WidePlanes(const Solid& solid) : count(solid.face_count) {
-    for (std::uint32_t face = 0; face < count; ++face) {
-      normals.set(face, solid.normals[face]);
-      offsets[face] = solid.offset(face);
-    }
-    for (std::uint32_t i = count; i < count + kWide; ++i) {
-      normals.set(i, Vec<3>::zero());
-      offsets[i] = 0.0f;
-    }
-  }
-
-  WideLanes heights(std::uint32_t face, const Vec<3>& point) const {
-    return normals.dot_at(face, point) - WideLanes::load(offsets + face);
-  }
-  /// The first face from this one on that a point is farther outside of than `threshold`.
-  std::uint32_t first_below(std::uint32_t face, const Vec<3>& point, float threshold) const {
-    for (; face < count; face += kWide) {
-      const std::uint32_t bits =
-          bits_before(bits_above(heights(face, point), threshold), face, count);
-      if (bits != 0) return face + static_cast<std::uint32_t>(std::countr_zero(bits));
-    }
-    return count;
-  }
-
-  std::uint32_t count;
-  WideVectors<kHullFacesMax> normals;
-  float offsets[kHullFacesMax + kWide];
-};
-
-/// The corners of a solid, and how far they are outside of a face of another.
-struct WideCorners {
-  explicit WideCorners(const Solid& solid) : count(solid.vertex_count) {
-    for (std::uint32_t i = 0; i < count + kWide; ++i)
-      points.set(i, solid.vertices[i < count ? i : count - 1]);
-  }
-
-  /// Looks at the corners in order, up to the first one that is not above `threshold`. @returns its
-  /// number, or `count` where all are; then `lowest` is the least height.
-  std::uint32_t survey(const Vec<3>& normal, float offset, float threshold, float& lowest) {
-    WideLanes least(3.4e38f);
-    for (std::uint32_t i = 0; i < count; i += kWide) {
-      const WideLanes height = points.dot_at(i, normal) - WideLanes(offset);
-      const std::uint32_t bits = bits_before(~bits_above(height, threshold), i, count) & 0xfu;
-      if (bits != 0) return i + static_cast<std::uint32_t>(std::countr_zero(bits));
-      height.store(heights + i);
-      least = min(least, height);
-    }
-    lowest = least.raw[0];
-    for (int lane = 1; lane < kWide; ++lane) lowest = min(lowest, least.raw[lane]);
-    return count;
-  }
-  /// The first corner of that height. @pre `survey` has found it.
-  std::uint32_t first_at(float height) const {
-    std::uint32_t i = 0;
-    std::uint32_t bits = 0;
-    for (; bits == 0; i += kWide)
-      bits = bits_of<kWide>(WideLanes::load(heights + i) == WideLanes(height));
-    return i - kWide + static_cast<std::uint32_t>(std::countr_zero(bits));
-  }
-
-  std::uint32_t count;
-  WideVectors<kHullVerticesMax> points;
-  float heights[kHullVerticesMax + kWide];
-};
-
-/// The face of a that b is farthest outside of. A face is given up at the first vertex of b that
-/// shows that it cannot win; the vertex that was deepest last is tried first, of many faces at
-/// once.
-static FaceAxis best_face(const WidePlanes& a, const Solid& b, const AxisTolerance& tolerance,
-                          float margin) {
-  FaceAxis best;
-  WideCorners corners(b);
-  float threshold = kNoSeparation;
-  std::uint32_t guess = 0;
-  for (std::uint32_t face = a.first_below(0, b.vertices[guess], threshold); face < a.count;
-       face = a.first_below(face + 1, b.vertices[guess], threshold)) {
-    const Vec<3> normal = a.normals.at(face);
-    const float offset = a.offsets[face];
-    float lowest = 0.0f;
-    const std::uint32_t loses = corners.survey(normal, offset, threshold, lowest);
-    if (loses < corners.count) {
-      guess = loses;
-      continue;
-    }
-    // Of equals the guess stays, else the first one is it.
-    if (dot(normal, b.vertices[guess]) - offset != lowest) guess = corners.first_at(lowest);
-    best = {face, guess, lowest};
-    if (lowest > margin) break;
-    threshold = tolerance.beyond(lowest);
-  }
-  return best;
+static void find_best_face(const WidePlanes& a, const Solid& b, const AxisTolerance& tolerance,
+                           float margin, FaceAxis& best) {
+  const Vec<3>* corners = b.vertices.data();
+  at_widest([&]<int W>() {
+    SolidKernels<W>::best_face(a, corners, b.vertex_count,
+                               {tolerance.face, tolerance.face_of_depth}, margin, best);
+  });
 }
 
 /// Even half-edges, in their order.
@@ -142,15 +47,13 @@ struct Edges {
 static void promising_edges(const Solid& a, const WidePlanes& planes, const Solid& b,
                             std::uint32_t support, float threshold, Edges& edges) {
   const WideLanes limit(min(threshold, 0.0f));
-  std::uint8_t below[kHullFacesMax + kWide];
+  std::int32_t below[in_whole_lanes(kHullFacesMax)];  // Bit 0: the centre; bit 1: the support.
   for (std::uint32_t face = 0; face < planes.count; face += kWide) {
     const WideLanes level = WideLanes::load(planes.offsets + face) + limit;
-    const std::uint32_t centre = bits_of<kWide>(planes.normals.dot_at(face, b.centre) > level);
-    const std::uint32_t vertex =
-        bits_of<kWide>(planes.normals.dot_at(face, b.vertices[support]) > level);
-    for (std::uint32_t lane = 0; lane < kWide; ++lane)
-      below[face + lane] =
-          static_cast<std::uint8_t>((~centre >> lane & 1u) | (~vertex >> lane & 1u) << 1);
+    const auto above_centre = dots_at(planes.normals, face, b.centre) > level;
+    const auto above_support = dots_at(planes.normals, face, b.vertices[support]) > level;
+    const WideLanes::Mask bits = (~above_centre & 1) | (~above_support & 2);
+    std::memcpy(below + face, &bits, sizeof bits);
   }
   for (std::uint32_t e = 0; e < a.edge_count; e += 2)
     if ((below[a.edges[e].face] & below[a.edges[e + 1].face]) == 0) edges.index[edges.count++] = e;
@@ -191,10 +94,10 @@ static void set_arcs(const Solid& solid, const Edges& edges, Arcs& arcs) {
 /// Minkowski difference with the edge of a.
 static void try_arcs(const Arc& a, const Arcs& arcs, std::uint32_t count, float* crossing) {
   for (std::uint32_t i = 0; i < count; i += kWide) {
-    const WideLanes from_b = arcs.from.dot_at(i, a.along);
-    const WideLanes to_b = arcs.to.dot_at(i, a.along);
-    const WideLanes from_a = arcs.along.dot_at(i, a.from);
-    const WideLanes to_a = arcs.along.dot_at(i, a.to);
+    const WideLanes from_b = dots_at(arcs.from, i, a.along);
+    const WideLanes to_b = dots_at(arcs.to, i, a.along);
+    const WideLanes from_a = dots_at(arcs.along, i, a.from);
+    const WideLanes to_a = dots_at(arcs.along, i, a.to);
     max(max(from_b * to_b, from_a * to_a), from_b * to_a).store(crossing + i);
   }
 }
@@ -242,10 +145,10 @@ static float size_of(const Solid& solid) {
 bool find_axes(const Solid& a, const Solid& b, const AxisTolerance& tolerance, float margin,
                Axes& axes) {
   const WidePlanes planes_a(a);
-  axes.faces[0] = best_face(planes_a, b, tolerance, margin);
+  find_best_face(planes_a, b, tolerance, margin, axes.faces[0]);
   if (axes.faces[0].separation > margin) return false;
   const WidePlanes planes_b(b);
-  axes.faces[1] = best_face(planes_b, a, tolerance, margin);
+  find_best_face(planes_b, a, tolerance, margin, axes.faces[1]);
   if (axes.faces[1].separation > margin) return false;
   const FaceAxis& face = axes.faces[axes.on_b(tolerance) ? 1 : 0];
   const float threshold = tolerance.beyond_faces(face.separation);

@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "solver/collision/bounds_tree.hpp"
+#include "solver/instruction_sets.hpp"
 
 namespace cycloid::solver {
 

@@ -26,7 +26,8 @@ function(precompile_for_the_matrix)
   set(with_flags_of_their_own solver/bodies/body_kernels_avx2.cpp
     solver/bodies/body_kernels_avx512.cpp solver/collision/bounds_kernels_avx2.cpp
     solver/collision/bounds_kernels_avx512.cpp solver/collision/few_cornered_avx2.cpp
-    solver/collision/few_cornered_avx512.cpp solver/constraints/contact_kernels.cpp
+    solver/collision/few_cornered_avx512.cpp solver/collision/solid_kernels_avx2.cpp
+    solver/collision/solid_kernels_avx512.cpp solver/constraints/contact_kernels.cpp
     solver/constraints/contact_kernels_avx2.cpp solver/constraints/contact_kernels_avx512.cpp
     solver/constraints/pin_kernels.cpp solver/constraints/pin_kernels_avx2.cpp
     solver/constraints/pin_kernels_avx512.cpp
