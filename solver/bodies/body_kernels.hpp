@@ -43,6 +43,8 @@ struct BodyKernels {
   /// passing.hpp.
   static std::uint64_t can_pass(float tick_s, const Body<2>* bodies, const Motion<2>* motions,
                                 const BodyPairs& pairs);
+  static std::uint64_t can_pass(float tick_s, const Body<3>* bodies, const Motion<3>* motions,
+                                const BodyPairs& pairs);
 
   /// The boxes of shapes: bounds_of, then along the flight. @pre every shape has one to four
   /// vertices.

@@ -11,13 +11,13 @@ namespace cycloid::solver {
 
 /// The text of BodyKernels::can_pass. Every function is a template on W.
 
-/// 1 in lanes of bodies that forces move.
-template <int W>
+/// Lanes of bodies that forces move.
+template <int D, int W>
 [[gnu::always_inline]] inline typename Lanes<W>::Mask respond_in_lanes(
-    const Body<2>* bodies, const LaneIndices<W>& slots) {
+    const Body<D>* bodies, const LaneIndices<W>& slots) {
   static_assert(BodyKind::kDynamic > BodyKind::kKinematic &&
                 BodyKind::kParticle > BodyKind::kKinematic);
-  constexpr int kKindAt = offsetof(Body<2>, kind) / sizeof(float);
+  constexpr int kKindAt = offsetof(Body<D>, kind) / sizeof(float);
   Lanes<W> columns[4];
   gather_floats<W>(bodies, slots, kKindAt, columns);
   typename Lanes<W>::Mask kinds;
@@ -25,31 +25,34 @@ template <int W>
   return kinds > static_cast<int>(BodyKind::kKinematic);
 }
 
-template <int W>
-[[gnu::always_inline]] inline PassingBody<2, Lanes<W>> gather_passing(const Body<2>* bodies,
-                                                                      const Motion<2>* motions,
+template <int D, int W>
+[[gnu::always_inline]] inline PassingBody<D, Lanes<W>> gather_passing(const Body<D>* bodies,
+                                                                      const Motion<D>* motions,
                                                                       const LaneIndices<W>& slots) {
   using L = Lanes<W>;
-  constexpr int kPositionAt = offsetof(Body<2>, position) / sizeof(float);
-  constexpr int kExtentAt = offsetof(Body<2>, extent) / sizeof(float);
-  static_assert(offsetof(Body<2>, thickness) == offsetof(Body<2>, extent) + sizeof(float));
-  static_assert(sizeof(Body<2>) >= offsetof(Body<2>, extent) + sizeof(Quad));
-  L pose[4];
+  constexpr int kPositionAt = offsetof(Body<D>, position) / sizeof(float);
+  constexpr int kExtentAt = offsetof(Body<D>, extent) / sizeof(float);
+  static_assert(offsetof(Body<D>, thickness) == offsetof(Body<D>, extent) + sizeof(float));
+  static_assert(sizeof(Body<D>) >= offsetof(Body<D>, extent) + sizeof(Quad));
+  L place[4];
   L sizes[4];
-  gather_floats<W>(bodies, slots, kPositionAt, pose);
+  gather_floats<W>(bodies, slots, kPositionAt, place);
   gather_floats<W>(bodies, slots, kExtentAt, sizes);
-  const MotionLanes<2, W> motion = gather<2, W>(motions, slots);
-  return {{{pose[0], pose[1]}},
-          sizes[0],
-          select(respond_in_lanes<W>(bodies, slots), sizes[1], L(kUnyielding)),
-          motion.spin,
-          motion.delta_position,
-          motion.delta_rotation};
+  const MotionLanes<D, W> motion = gather<D, W>(motions, slots);
+  PassingBody<D, L> body;
+  for (int i = 0; i < D; ++i) body.position[i] = place[i];
+  body.extent = sizes[0];
+  body.thickness = select(respond_in_lanes<D, W>(bodies, slots), sizes[1], L(kUnyielding));
+  body.spin = motion.spin;
+  body.delta_position = motion.delta_position;
+  body.delta_rotation = motion.delta_rotation;
+  return body;
 }
 
-template <int W>
-std::uint64_t BodyKernels<W>::can_pass(float tick_s, const Body<2>* bodies,
-                                       const Motion<2>* motions, const BodyPairs& pairs) {
+template <int D, int W>
+[[gnu::always_inline]] inline std::uint64_t which_can_pass(float tick_s, const Body<D>* bodies,
+                                                           const Motion<D>* motions,
+                                                           const BodyPairs& pairs) {
   std::uint64_t passing = 0;
   for (int begin = 0; begin < pairs.count; begin += kLaneCount<W>) {
     LaneIndices<W> a;
@@ -58,11 +61,23 @@ std::uint64_t BodyKernels<W>::can_pass(float tick_s, const Body<2>* bodies,
     const LaneBits used = take_slots<W>(pairs.a + begin, left, a);
     take_slots<W>(pairs.b + begin, left, b);
     const Lanes<W> passes =
-        solver::can_pass<2, Lanes<W>>(Lanes<W>(tick_s), gather_passing<W>(bodies, motions, a),
-                                      gather_passing<W>(bodies, motions, b));
+        solver::can_pass<D, Lanes<W>>(Lanes<W>(tick_s), gather_passing<D, W>(bodies, motions, a),
+                                      gather_passing<D, W>(bodies, motions, b));
     passing |= std::uint64_t{used & bits_of<W>(passes > Lanes<W>(0.0f))} << begin;
   }
   return passing;
+}
+
+template <int W>
+std::uint64_t BodyKernels<W>::can_pass(float tick_s, const Body<2>* bodies,
+                                       const Motion<2>* motions, const BodyPairs& pairs) {
+  return which_can_pass<2, W>(tick_s, bodies, motions, pairs);
+}
+
+template <int W>
+std::uint64_t BodyKernels<W>::can_pass(float tick_s, const Body<3>* bodies,
+                                       const Motion<3>* motions, const BodyPairs& pairs) {
+  return which_can_pass<3, W>(tick_s, bodies, motions, pairs);
 }
 
 }  // namespace cycloid::solver

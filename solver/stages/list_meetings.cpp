@@ -100,33 +100,16 @@ static bool may_stop(const WorldState<D>& state, const StepScratch<D>& scratch,
          place_if_stopped_at(state, scratch, b, a) != 0;
 }
 
-template <int D>
-static PassingBody<D, float> passing_body(const WorldState<D>& state, const StepScratch<D>& scratch,
-                                          std::uint32_t slot) {
-  const Body<D>& body = state.bodies[slot];
-  const Motion<D>& motion = scratch.motions[slot];
-  const float thickness = responds(body.kind) ? body.thickness : kUnyielding;
-  return {body.position, body.extent,           thickness,
-          motion.spin,   motion.delta_position, motion.delta_rotation};
-}
-
 /// A bit for each pair of bodies of which one may pass through the other in the tick.
-static std::uint64_t who_can_pass(const StepContext<3>& context, const WorldState<3>& state,
-                                  const StepScratch<3>& scratch, const BodyPairs& pairs) {
-  std::uint64_t passing = 0;
-  for (int i = 0; i < pairs.count; ++i) {
-    const float passes = can_pass(context.tick_s, passing_body(state, scratch, pairs.a[i]),
-                                  passing_body(state, scratch, pairs.b[i]));
-    if (passes > 0.0f) passing |= std::uint64_t{1} << i;
-  }
-  return passing;
-}
-static std::uint64_t who_can_pass(const StepContext<2>& context, const WorldState<2>& state,
-                                  const StepScratch<2>& scratch, const BodyPairs& pairs) {
+template <int D>
+static std::uint64_t who_can_pass(const StepContext<D>& context, const WorldState<D>& state,
+                                  const StepScratch<D>& scratch, const BodyPairs& pairs) {
   return at_width(widest_lanes(context.lanes), [&]<int W>() {
+    const Body<D>* bodies = state.bodies.data();
+    const Motion<D>* motions = scratch.motions.data();
     constexpr int kFew = kFewLanes<W>;
-    const auto ask = pairs.count > kFew ? BodyKernels<W>::can_pass : BodyKernels<kFew>::can_pass;
-    return ask(context.tick_s, state.bodies.data(), scratch.motions.data(), pairs);
+    return pairs.count > kFew ? BodyKernels<W>::can_pass(context.tick_s, bodies, motions, pairs)
+                              : BodyKernels<kFew>::can_pass(context.tick_s, bodies, motions, pairs);
   });
 }
 
