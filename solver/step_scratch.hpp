@@ -176,7 +176,7 @@ struct StepScratch : ContactList<D> {
   std::vector<Bounds<D>> ways;               ///< By shape, of those that have one.
   std::vector<WayIs> way_is;                 ///< By shape.
   std::vector<std::uint32_t> searching;      ///< Shapes whose way leaves what their lists are of.
-  std::vector<ShapePair> passing;            ///< Of which one body can pass through the other.
+  std::vector<ShapePair> some_pairs;         ///< For list_meetings to work in.
   std::vector<ShapePair> meetings;           ///< Which may meet on the way of a fast body.
   std::vector<float> fractions;              ///< Of meetings: of the tick, at which they do.
   ParticleScratch<D> particles;

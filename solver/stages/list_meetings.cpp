@@ -151,13 +151,14 @@ static void list_passing(const StepContext<D>& context, const WorldState<D>& sta
   list_in_chunks(workers, static_cast<int>(pairs.size()), kGrain, scratch.pair_chunks, out, list);
 }
 
-/// The ways of those shapes of fast bodies that are in such a pair and have none yet.
+/// The ways of those shapes of fast bodies that are in one of these pairs and have none yet.
 template <int D>
-static void find_ways(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+static void find_ways(const StepContext<D>& context, const WorldState<D>& state,
+                      const std::vector<ShapePair>& pairs, Workers& workers,
                       StepScratch<D>& scratch) {
   std::vector<std::uint32_t>& wanted = scratch.looking;
   wanted.clear();
-  for (const ShapePair& pair : scratch.passing)
+  for (const ShapePair& pair : pairs)
     for (const std::uint32_t s : {pair.shape_a, pair.shape_b}) {
       if (scratch.fast_of_shape[s] == 0 || scratch.way_is[s] != WayIs::kUnknown) continue;
       scratch.way_is[s] = WayIs::kListed;
@@ -208,21 +209,21 @@ static void search_all(const WorldState<D>& state, Workers& workers, StepScratch
                  list);
 }
 
-/// Appends the meetings among those pairs that no search finds.
+/// Appends the pairs of which one meets the other's box on its way and no search finds it.
 template <int D>
-static void list_among_passing(Workers& workers, StepScratch<D>& scratch) {
+static void list_met(const std::vector<ShapePair>& pairs, Workers& workers, StepScratch<D>& scratch,
+                     std::vector<ShapePair>& out) {
   constexpr int kGrain = 1024;
   const auto is_listed = [&](std::uint32_t fast, std::uint32_t other) {
     return meets(scratch, WayIs::kListed, fast, other) &&
            !meets(scratch, WayIs::kSearched, other, fast);
   };
   const auto list = [&](Range range, std::vector<ShapePair>& found) {
-    append_if(scratch.passing, range, found, [&](const ShapePair& pair) {
+    append_if(pairs, range, found, [&](const ShapePair& pair) {
       return is_listed(pair.shape_a, pair.shape_b) || is_listed(pair.shape_b, pair.shape_a);
     });
   };
-  list_in_chunks(workers, static_cast<int>(scratch.passing.size()), kGrain, scratch.pair_chunks,
-                 scratch.meetings, list);
+  list_in_chunks(workers, static_cast<int>(pairs.size()), kGrain, scratch.pair_chunks, out, list);
 }
 
 /// The pairs of shapes of which one is of a fast body that may be stopped at the other, can pass
@@ -246,14 +247,22 @@ void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Wo
   if (!many_leave)
     searching.insert(searching.end(), scratch.leaving.begin(), scratch.leaving.end());
   for (const std::uint32_t s : searching) scratch.way_is[s] = WayIs::kSearched;
-  std::vector<ShapePair>& passing = scratch.passing;
-  passing.clear();
-  list_passing(context, state, many_leave ? candidates : scratch.pairs, workers, scratch, passing);
-  find_ways(context, state, workers, scratch);
-  list_among_passing(workers, scratch);
-  passing.clear();
-  search_all(state, workers, scratch, passing);
-  list_passing(context, state, passing, workers, scratch, scratch.meetings);
+  std::vector<ShapePair>& some = scratch.some_pairs;
+  some.clear();
+  if (many_leave) {
+    // Most of them are not near, and of those that leave ways are known.
+    find_ways(context, state, candidates, workers, scratch);
+    list_met(candidates, workers, scratch, some);
+    list_passing(context, state, some, workers, scratch, scratch.meetings);
+  } else {
+    // All are near, most fly side by side, and have no ways.
+    list_passing(context, state, scratch.pairs, workers, scratch, some);
+    find_ways(context, state, some, workers, scratch);
+    list_met(some, workers, scratch, scratch.meetings);
+  }
+  some.clear();
+  search_all(state, workers, scratch, some);
+  list_passing(context, state, some, workers, scratch, scratch.meetings);
 }
 
 template void list_meetings(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);

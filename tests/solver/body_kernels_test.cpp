@@ -206,7 +206,7 @@ TEST(BodyKernels, FindWhoMayHaveMovedByHalfItsThicknessAtEveryWidth) {
 
 /// Bodies of which half do not yield, and some turn too far to tell.
 template <int D>
-struct Crowd {
+struct Passers {
   std::vector<Body<D>> bodies;
   std::vector<Motion<D>> motions;
 
@@ -227,24 +227,24 @@ static Vec<N> drawn_vector(std::mt19937& random, float most) {
 }
 
 template <int D>
-static Crowd<D> drawn_crowd(std::mt19937& random, int count) {
+static Passers<D> drawn_passers(std::mt19937& random, int count) {
   constexpr BodyKind kKinds[4] = {BodyKind::kStatic, BodyKind::kKinematic, BodyKind::kDynamic,
                                   BodyKind::kParticle};
-  Crowd<D> crowd;
+  Passers<D> passers;
   for (int i = 0; i < count; ++i) {
     Body<D> body{};
     body.kind = kKinds[random() % 4];
     body.position = drawn_vector<D>(random, 3.0f);
     body.extent = 1.5f + drawn(random, 1.0f);
     body.thickness = 0.5f + drawn(random, 0.5f);
-    crowd.bodies.push_back(body);
+    passers.bodies.push_back(body);
     const float turn = random() % 4 == 0 ? 3.0f : 0.1f;
     const float spin = random() % 8 == 0 ? 400.0f : 5.0f;
-    crowd.motions.push_back({Vec<D>::zero(), drawn_vector<Dim<D>::kSpin>(random, spin),
-                             drawn_vector<D>(random, 0.3f),
-                             rotation_by(drawn_vector<Dim<D>::kSpin>(random, turn))});
+    passers.motions.push_back({Vec<D>::zero(), drawn_vector<Dim<D>::kSpin>(random, spin),
+                               drawn_vector<D>(random, 0.3f),
+                               rotation_by(drawn_vector<Dim<D>::kSpin>(random, turn))});
   }
-  return crowd;
+  return passers;
 }
 
 template <int D>
@@ -255,20 +255,20 @@ static void expect_who_can_pass_at_every_width() {
   int asked = 0;
   for (int round = 0; round < 320; ++round) {
     const int count = 1 + round % 64;
-    const Crowd<D> crowd = drawn_crowd<D>(random, 2 * count);
+    const Passers<D> passers = drawn_passers<D>(random, 2 * count);
     BodyPairs pairs;
     std::uint64_t expected = 0;
     for (std::uint32_t slot = 0; pairs.count < count; ++pairs.count, slot += 2) {
       pairs.a[pairs.count] = slot;
       pairs.b[pairs.count] = slot + 1;
-      const bool passes = can_pass(kTick, crowd.passing(slot), crowd.passing(slot + 1)) > 0.0f;
+      const bool passes = can_pass(kTick, passers.passing(slot), passers.passing(slot + 1)) > 0.0f;
       if (passes) expected |= std::uint64_t{1} << pairs.count;
       passing += passes ? 1 : 0;
       ++asked;
     }
     for_each_width([&]<int W>() {
-      EXPECT_EQ(expected,
-                BodyKernels<W>::can_pass(kTick, crowd.bodies.data(), crowd.motions.data(), pairs))
+      EXPECT_EQ(expected, BodyKernels<W>::can_pass(kTick, passers.bodies.data(),
+                                                   passers.motions.data(), pairs))
           << "width " << W << ", round " << round;
     });
     ASSERT_FALSE(testing::Test::HasFailure());
