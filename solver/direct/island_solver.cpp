@@ -25,9 +25,8 @@ static bool would_stick(Wide friction, const IslandRow<D>* normal) {
 
 template <int D>
 bool IslandSolver<D>::leaves_for_sweeps(const Island& island, Wide tolerance) const {
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    if (!group.is_contact) continue;
     const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
     if (row[0].missing < -tolerance) return true;
     if (row[0].impulse == 0.0) continue;
@@ -168,12 +167,14 @@ void IslandSolver<D>::answer_joints(const Island& island) {
 template <int D>
 Wide IslandSolver<D>::share_of_correction(const Island& island, Wide speed) const {
   Wide most = speed;
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    Wide of_node = 0.0;
     for (int i = 0; i < D; ++i)
-      most = std::max(most, magnitude(correction[static_cast<std::size_t>(n)][i]));
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+      of_node = std::max(of_node, magnitude(correction[static_cast<std::size_t>(n)][i]));
+    most = std::max(most, of_node);
+  }
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    if (!group.is_contact) continue;
     const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
     for_each_speed<D>(group, row, correction, [&](const IslandRow<D>&, Wide corrected) {
       most = std::max(most, magnitude(corrected));
@@ -190,9 +191,8 @@ void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
   island.corrects = false;
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     correction[static_cast<std::size_t>(n)] = Vector::zero();
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {  // Joints close by velocities.
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    if (!group.is_contact) continue;  // Joints close by velocities, and may have no row.
     const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
     if (!row->holds || row->closing == 0.0) continue;
     island.corrects = true;
@@ -225,8 +225,10 @@ void IslandSolver<D>::relieve_stress(const Island& island, std::span<const BodyM
   for (int g = island.groups.begin; g < island.groups.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     const int forces = std::min(group.count, D);  // Rows after those may be of torques.
+    Wide of_group = 0.0;
     for (int r = group.first; r < group.first + forces; ++r)
-      most = std::max(most, magnitude(rows[static_cast<std::size_t>(r)].impulse));
+      of_group = std::max(of_group, magnitude(rows[static_cast<std::size_t>(r)].impulse));
+    most = std::max(most, of_group);
   }
   if (most <= kStress * load) return;
   const Wide share = kStress * load / most;
@@ -248,7 +250,9 @@ void IslandSolver<D>::forget_conflict(const Island& island) {
   for (int g = island.joints.begin; g < island.joints.end; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    for (int r = 0; r < group.count; ++r) most = std::max(most, magnitude(row[r].missing));
+    Wide of_group = 0.0;
+    for (int r = 0; r < group.count; ++r) of_group = std::max(of_group, magnitude(row[r].missing));
+    most = std::max(most, of_group);
   }
   if (!(most > kConflict)) return;
   for (int g = island.groups.begin; g < island.groups.end; ++g) {

@@ -244,10 +244,9 @@ bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyM
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     momentum_[static_cast<std::size_t>(n)] = Vector::zero();
   bool bounded = false;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
+  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
     IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
-    if (!group.is_contact) continue;
     const Wide normal = std::max(row[0].impulse + row[0].change, 0.0);
     const Wide bound = group.friction * normal;
     const Wide square = square_of_tangents(group, row);

@@ -250,8 +250,8 @@ void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Wo
   std::vector<ShapePair>& some = scratch.some_pairs;
   some.clear();
   if (many_leave) {
-    // Most of them are not near, and of those that leave ways are known.
-    find_ways(context, state, candidates, workers, scratch);
+    // Most of them are not near. Who leaves has a way; who stays in its box meets but its pairs.
+    find_ways(context, state, scratch.pairs, workers, scratch);
     list_met(candidates, workers, scratch, some);
     list_passing(context, state, some, workers, scratch, scratch.meetings);
   } else {
