@@ -15,11 +15,11 @@ constexpr std::uint32_t in_whole_lanes(std::uint32_t count) {
   return (count + kMostLanes - 1) / kMostLanes * kMostLanes;
 }
 
+/// Vectors, kMost at the most; behind the last one there is room for whole lanes.
 template <std::uint32_t kMost>
 struct WideVectors {
   float part[3][in_whole_lanes(kMost)];
 
-  Vec<3> at(std::uint32_t i) const { return {{part[0][i], part[1][i], part[2][i]}}; }
   void set(std::uint32_t i, const Vec<3>& v) {
     for (int k = 0; k < 3; ++k) part[k][i] = v[k];
   }
