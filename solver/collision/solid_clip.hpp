@@ -22,10 +22,11 @@ struct AxisTolerance {
         face_of_depth(1.0e-3f),
         edge_of_depth(2.0e-2f) {}
 
+  FaceTolerance of_faces() const { return {face, face_of_depth}; }
   /// How far points may be from where an exact axis says they are, m.
   float slack() const { return 0.2f * face; }
   /// The separation that a face, or an edge pair after an edge pair, has to exceed.
-  float beyond(float best) const { return best + face + face_of_depth * max(-best, 0.0f); }
+  float beyond(float best) const { return of_faces().beyond(best); }
   /// The separation that the first edge pair has to exceed.
   float beyond_faces(float best) const { return best + edge + edge_of_depth * max(-best, 0.0f); }
 };

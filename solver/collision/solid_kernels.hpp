@@ -15,6 +15,11 @@ struct FaceAxis {
 struct FaceTolerance {
   float least;  ///< m
   float of_depth;
+
+  /// The separation that a face has to exceed after the best one, m.
+  [[gnu::always_inline]] float beyond(float best) const {
+    return best + least + of_depth * select(-best > 0.0f, -best, 0.0f);
+  }
 };
 
 /// Searches of the faces and corners of solids, compiled for each instruction set:

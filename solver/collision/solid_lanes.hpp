@@ -78,7 +78,7 @@ float SolidKernels<W>::lowest_along(const PolyhedronVertex* corners, std::uint32
   return least_of<W>(lowest);
 }
 
-/// How far each corner is outside of each face.
+/// How far each corner is outside of each face, corner by corner. A template on W like all here.
 template <int W>
 struct FaceHeights {
   std::uint32_t stride;  ///< From a corner to the next.
@@ -151,8 +151,7 @@ void SolidKernels<W>::best_face(const WidePlanes& planes, const Vec<3>* corners,
     best.support = guess;
     best.separation = heights.at(guess, face);
     if (lowest > margin) return;
-    const float depth = -lowest > 0.0f ? -lowest : 0.0f;
-    threshold = lowest + tolerance.least + tolerance.of_depth * depth;
+    threshold = tolerance.beyond(lowest);
   }
 }
 

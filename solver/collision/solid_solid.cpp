@@ -15,23 +15,11 @@ static WideLanes dots_at(const WideVectors<kMost>& vectors, std::uint32_t i, con
          WideLanes::load(&vectors.part[2][i]) * with[2];
 }
 
-WidePlanes::WidePlanes(const Solid& solid) : count(solid.face_count) {
-  for (std::uint32_t face = 0; face < count; ++face) {
-    normals.set(face, solid.normals[face]);
-    offsets[face] = solid.offset(face);
-  }
-  for (std::uint32_t i = count; i < in_whole_lanes(count); ++i) {
-    normals.set(i, Vec<3>::zero());
-    offsets[i] = 3.0e38f;
-  }
-}
-
 static void find_best_face(const WidePlanes& a, const Solid& b, const AxisTolerance& tolerance,
                            float margin, FaceAxis& best) {
   const Vec<3>* corners = b.vertices.data();
   at_widest([&]<int W>() {
-    SolidKernels<W>::best_face(a, corners, b.vertex_count,
-                               {tolerance.face, tolerance.face_of_depth}, margin, best);
+    SolidKernels<W>::best_face(a, corners, b.vertex_count, tolerance.of_faces(), margin, best);
   });
 }
 

@@ -8,6 +8,7 @@
 
 namespace cycloid::solver {
 
+/// Whether a body winds, as bodies/passing.hpp has it.
 template <int D>
 bool winds(const StepContext<D>& context, const Motion<D>& motion) {
   return winds(context.tick_s, motion.spin);

@@ -112,6 +112,7 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
   return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
 }
 
+/// The fast body of a shape where it may be stopped at the other, else null.
 template <int D>
 static FastBody* stopped_at(const WorldState<D>& state, StepScratch<D>& scratch,
                             std::uint32_t shape, std::uint32_t other) {

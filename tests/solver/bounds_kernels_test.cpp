@@ -7,7 +7,7 @@
 #include <vector>
 
 #include "solver/collision/bounds_tree.hpp"
-#include "solver/instruction_sets.hpp"
+#include "tests/solver/every_width.hpp"
 
 namespace cycloid::solver {
 
@@ -95,9 +95,7 @@ static void expect_what_comparing_finds() {
 
 template <int D>
 static void expect_it_of_every_width() {
-  expect_what_comparing_finds<D, 4>();
-  if (has_avx2_kernels()) expect_what_comparing_finds<D, kAvx2Lanes>();
-  if (has_avx512_kernels()) expect_what_comparing_finds<D, kAvx512Lanes>();
+  for_each_width<4>([]<int W>() { expect_what_comparing_finds<D, W>(); });
 }
 
 TEST(BoundsKernels, FindWhatComparingFindsInItsOrderAtEveryWidth) {

@@ -1,16 +1,9 @@
 #include "solver/collision/solid_kernels.hpp"
 
-#include "solver/instruction_sets.hpp"
+#include "tests/solver/every_width.hpp"
 #include "tests/solver/manifold_3d_fixture.hpp"
 
 namespace cycloid::solver {
-
-template <class Act>
-static void for_each_width(Act&& act) {
-  act.template operator()<4>();
-  if (has_avx2_kernels()) act.template operator()<kAvx2Lanes>();
-  if (has_avx512_kernels()) act.template operator()<kAvx512Lanes>();
-}
 
 static Vec<3> drawn_vector(std::mt19937& random, float most) {
   Vec<3> drawn;
@@ -74,7 +67,7 @@ TEST(SolidKernels, FindFacesAndCornersAsOneByOneAtEveryWidth) {
       const Vec<3> point = drawn_vector(random, 2.0f);
       const std::uint32_t face = first_farthest_face(faces, point);
       const float lowest = lowest_corner(vertices, point);
-      for_each_width([&]<int W>() {
+      for_each_width<4>([&]<int W>() {
         EXPECT_EQ(face, SolidKernels<W>::face_towards(
                             faces.data(), static_cast<std::uint32_t>(faces.size()), point));
         EXPECT_EQ(lowest, SolidKernels<W>::lowest_along(
@@ -113,7 +106,7 @@ TEST(SolidKernels, FindTheBestFaceAsFaceByFaceAtEveryWidth) {
         const FaceAxis expected = best_face_by_face(a, b, tolerance, 0.02f);
         const WidePlanes planes(a);
         ++(expected.separation > 0.02f ? apart : near);
-        for_each_width([&]<int W>() {
+        for_each_width<4>([&]<int W>() {
           FaceAxis best{0, 0, -1.0e30f};
           SolidKernels<W>::best_face(planes, b.vertices.data(), b.vertex_count, tolerance, 0.02f,
                                      best);

@@ -8,7 +8,7 @@
 #include <vector>
 
 #include "solver/bodies/body_kernels.hpp"
-#include "solver/instruction_sets.hpp"
+#include "tests/solver/every_width.hpp"
 
 namespace cycloid::solver {
 
@@ -99,12 +99,7 @@ static void expect_to_turn_as_each_by_itself() {
 }
 
 TEST(TurnFreely, LanesTurnToTheBitAsEachByItself) {
-  expect_to_turn_as_each_by_itself<1>();
-  expect_to_turn_as_each_by_itself<4>();
-  expect_to_turn_as_each_by_itself<8>();
-  expect_to_turn_as_each_by_itself<16>();
-  if (has_avx2_kernels()) expect_to_turn_as_each_by_itself<kAvx2Lanes>();
-  if (has_avx512_kernels()) expect_to_turn_as_each_by_itself<kAvx512Lanes>();
+  for_each_width<1, 4, 8, 16>([]<int W>() { expect_to_turn_as_each_by_itself<W>(); });
 }
 
 }  // namespace cycloid::solver
