@@ -9,9 +9,9 @@ namespace cycloid::protocol {
 namespace {
 
 constexpr unsigned kOriginBits = 2;
-constexpr unsigned kButtonsBit = kOriginBits + scenes::kAxes;
+constexpr unsigned kSeatButtonsBit = kOriginBits + scenes::kAxes;
 constexpr std::uint8_t kOriginMask = (1u << kOriginBits) - 1;
-static_assert(kButtonsBit < 7, "what a seat has fits a byte, and one bit is left");
+static_assert(kSeatButtonsBit < 7, "what a seat has fits a byte, and one bit is left");
 
 void append_number(std::uint64_t value, std::vector<std::byte>& into) {
   for (; value >= 0x80; value >>= 7) into.push_back(static_cast<std::byte>(value | 0x80));
@@ -23,7 +23,7 @@ void append_seat(const SeatFrame& seat, std::vector<std::byte>& into) {
   for (unsigned axis = 0; axis < scenes::kAxes; ++axis) {
     if (seat.input.axes[axis] != 0) has |= 1u << (kOriginBits + axis);
   }
-  if (seat.input.buttons != 0) has |= 1u << kButtonsBit;
+  if (seat.input.buttons != 0) has |= 1u << kSeatButtonsBit;
   into.push_back(static_cast<std::byte>(has));
   for (const std::int16_t axis : seat.input.axes) {
     if (axis != 0) append_little(static_cast<std::uint16_t>(axis), into);
@@ -58,14 +58,14 @@ class FrameReader {
   SeatFrame seat() {
     SeatFrame seat;
     const auto has = from_.take<std::uint8_t>();
-    from_.failed = from_.failed || (has >> (kButtonsBit + 1)) != 0;
+    from_.failed = from_.failed || (has >> (kSeatButtonsBit + 1)) != 0;
     seat.origin = static_cast<Origin>((has & kOriginMask) + 1);
     for (unsigned axis = 0; axis < scenes::kAxes; ++axis) {
       if ((has >> (kOriginBits + axis) & 1) == 0) continue;
       seat.input.axes[axis] = static_cast<std::int16_t>(from_.take<std::uint16_t>());
       from_.failed = from_.failed || seat.input.axes[axis] == 0;
     }
-    if ((has >> kButtonsBit & 1) != 0) {
+    if ((has >> kSeatButtonsBit & 1) != 0) {
       seat.input.buttons =
           static_cast<std::uint16_t>(number(std::numeric_limits<std::uint16_t>::max()));
       from_.failed = from_.failed || seat.input.buttons == 0;

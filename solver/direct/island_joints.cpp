@@ -6,7 +6,7 @@ namespace cycloid::solver {
 
 /// The most that a body is taken to turn in a substep, rad: beyond it the second order tells
 /// little, and what a jam spins for a moment would throw all that it is jointed to.
-static constexpr Wide kTurn_rad = 0.1;
+static constexpr Wide kGuessedTurn_rad = 0.1;
 /// As fast as joints that are apart may move any body by closing, m/s, ...
 static constexpr Wide kMoved = 0.5;
 /// ... or this share of the speed at which the worst of them would close by itself.
@@ -16,7 +16,7 @@ static constexpr Wide kMovedShare = 0.12;
 /// 60 Hz it is the hundredth part of a millimetre, for which a solve is a tenth of a substep.
 static constexpr Wide kLetBe = 1.0e-3;
 
-/// The spin of a node before the first guess, at most kTurn_rad in a substep.
+/// The spin of a node before the first guess, at most kGuessedTurn_rad in a substep.
 template <int D>
 static Vec<Dim<D>::kSpin, Wide> spin_before(const Motion<D>& motion,
                                             const Vec<Dim<D>::kFreedoms, Wide>& guess, Wide h) {
@@ -26,7 +26,7 @@ static Vec<Dim<D>::kSpin, Wide> spin_before(const Motion<D>& motion,
     spin[i] = static_cast<Wide>(motion.spin[i]) - guess[D + i];
     square += spin[i] * spin[i];
   }
-  const Wide most = kTurn_rad / h;
+  const Wide most = kGuessedTurn_rad / h;
   if (!(square > most * most)) return spin;
   const Wide scale = most / root(square);
   for (int i = 0; i < Dim<D>::kSpin; ++i) spin[i] *= scale;

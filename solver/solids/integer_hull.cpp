@@ -4,22 +4,22 @@
 
 namespace cycloid::solver {
 
-using Difference = std::array<std::int64_t, 3>;
+using GridStep = std::array<std::int64_t, 3>;
 
-static Difference difference(const GridPoint& to, const GridPoint& from) {
+static GridStep difference(const GridPoint& to, const GridPoint& from) {
   return {std::int64_t{to.v[0]} - from.v[0], std::int64_t{to.v[1]} - from.v[1],
           std::int64_t{to.v[2]} - from.v[2]};
 }
 
 Vec<3> grid_difference(const GridPoint& to, const GridPoint& from) {
-  const Difference d = difference(to, from);
+  const GridStep d = difference(to, from);
   return {{static_cast<float>(d[0]), static_cast<float>(d[1]), static_cast<float>(d[2])}};
 }
 
 /// Components below 2^49: differences are below 2^24.
 static GridArea area_of(const GridPoint& a, const GridPoint& b, const GridPoint& c) {
-  const Difference u = difference(b, a);
-  const Difference w = difference(c, a);
+  const GridStep u = difference(b, a);
+  const GridStep w = difference(c, a);
   return {{u[1] * w[2] - u[2] * w[1], u[2] * w[0] - u[0] * w[2], u[0] * w[1] - u[1] * w[0]}};
 }
 
@@ -32,7 +32,7 @@ Vec<3> unit_normal(const GridArea& area) {
 /// Whether `point` lies strictly outside, exactly. The sum needs 75 bits, so the area is taken as
 /// high * 2^28 + low with 0 <= low < 2^28.
 static bool is_outside(const GridPoint& point, const GridPoint& corner, const GridArea& area) {
-  const Difference d = difference(point, corner);
+  const GridStep d = difference(point, corner);
   std::int64_t high = 0;
   std::int64_t low = 0;
   for (std::size_t i = 0; i < 3; ++i) {

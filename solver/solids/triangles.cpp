@@ -6,7 +6,7 @@
 
 namespace cycloid::solver {
 
-using Corners = std::array<std::uint32_t, 3>;
+using TriangleCorners = std::array<std::uint32_t, 3>;
 
 /// A side of a triangle, from one point to another.
 struct DirectedEdge {
@@ -22,7 +22,7 @@ struct DirectedEdge {
   }
 };
 
-static std::vector<DirectedEdge> sorted_edges(const std::vector<Corners>& triangles) {
+static std::vector<DirectedEdge> sorted_edges(const std::vector<TriangleCorners>& triangles) {
   std::vector<DirectedEdge> edges;
   edges.reserve(3 * triangles.size());
   for (std::uint32_t t = 0; t < triangles.size(); ++t)
@@ -44,7 +44,7 @@ static const DirectedEdge* find_single(const std::vector<DirectedEdge>& edges, s
 }
 
 /// False where a corner is closer than kSizeMin to the side across from it.
-static bool set_corners(const std::vector<Vec<3>>& points, const Corners& corners,
+static bool set_corners(const std::vector<Vec<3>>& points, const TriangleCorners& corners,
                         Shape<3>& shape) {
   for (std::size_t k = 0; k < 3; ++k) shape.vertices[k] = points[corners[k]];
   const Vec<3> u = shape.vertices[1] - shape.vertices[0];
@@ -57,10 +57,10 @@ static bool set_corners(const std::vector<Vec<3>>& points, const Corners& corner
 }
 
 static bool append_triangles(const std::vector<Vec<3>>& points,
-                             const std::vector<Corners>& triangles, const Shape<3>& blank,
+                             const std::vector<TriangleCorners>& triangles, const Shape<3>& blank,
                              std::vector<Shape<3>>& into) {
   std::vector<Shape<3>> shapes;
-  for (const Corners& corners : triangles) {
+  for (const TriangleCorners& corners : triangles) {
     Shape<3>& shape = shapes.emplace_back(blank);
     shape.kind = ShapeKind::kTriangle;
     shape.vertex_count = 3;
@@ -97,7 +97,7 @@ Error append_height_field(const ShapeDef<3>& def, int index, const Shape<3>& bla
       points.push_back(origin + Vec<3>{{static_cast<float>(column) * def.cell[0],
                                         def.heights[row * def.columns + column],
                                         static_cast<float>(row) * def.cell[1]}});
-  std::vector<Corners> triangles;
+  std::vector<TriangleCorners> triangles;
   for (std::uint32_t row = 0; row + 1 < rows; ++row)
     for (std::uint32_t column = 0; column + 1 < def.columns; ++column) {
       const std::uint32_t here = row * def.columns + column;

@@ -5,7 +5,7 @@ namespace cycloid::solver {
 /// Over the slop, the gap that counts as none. Without it every solve closes gaps of a rounding of
 /// the positions, a millimetre per second of noise in each row of a stack, and the next one has to
 /// stop what that set going: the pyramids under heavy apexes then cost seven times as much.
-static constexpr float kTouch = 0.1f;
+static constexpr float kTouchOfSlop = 0.1f;
 
 /// Whether a joint has rows that only sweeps solve.
 template <int D>
@@ -64,7 +64,7 @@ template <int D, int W>
 static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-  const float touch = kTouch * context.tuning.slop;
+  const float touch = kTouchOfSlop * context.tuning.slop;
   for (std::size_t i = 0; i < solver.held.size(); ++i) {
     const int at = solver.held_in[i];
     if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken) continue;
