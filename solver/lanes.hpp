@@ -6,6 +6,8 @@
 #include <immintrin.h>
 #elif defined(__SSE2__)
 #include <emmintrin.h>
+#elif defined(__wasm_simd128__)
+#include <wasm_simd128.h>
 #endif
 
 #include "solver/arithmetic.hpp"
@@ -144,6 +146,13 @@ template <int W>
     __m128 lanes;
     std::memcpy(&lanes, &mask, sizeof lanes);
     return static_cast<std::uint32_t>(_mm_movemask_ps(lanes));
+  }
+#endif
+#ifdef __wasm_simd128__
+  if constexpr (W == 4) {
+    v128_t lanes;
+    std::memcpy(&lanes, &mask, sizeof lanes);
+    return wasm_i32x4_bitmask(lanes);
   }
 #endif
   typename Lanes<W>::Mask own{};

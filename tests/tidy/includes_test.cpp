@@ -48,7 +48,8 @@ static const std::set<std::string> kStandardInWorkers = {"atomic", "condition_va
 
 /// And instructions by name, which only the one place that knows vectors may.
 static bool is_of_lanes(const std::string& path, const std::string& included) {
-  return path == "solver/lanes.hpp" && (included == "immintrin.h" || included == "emmintrin.h");
+  return path == "solver/lanes.hpp" &&
+         (included == "immintrin.h" || included == "emmintrin.h" || included == "wasm_simd128.h");
 }
 
 static bool is_standard(const std::string& included) {
