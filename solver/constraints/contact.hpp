@@ -117,7 +117,6 @@ template <int D, int W>
       impulse += point.tangent_impulse[t] * tangent_of(block, t);
     apply_pair(impulse, arms_of(block, point), block, a, b);
   }
-  if (block.rolls) turn_pair(block.extra->rolling_impulse, block, a, b);
 }
 
 /// Holds an impulse of N components to a length of at most `bound`; in the plane an interval. A
@@ -153,6 +152,14 @@ void slide_against(const L& bound, const L (&impulse)[2], const L (&mass)[2], co
   for (int t = 0; t < 2; ++t) wanted[t] = select(slides, impulse[t] - least * speed[t], wanted[t]);
 }
 
+/// The friction along a tangent that a sweep wants, before it is held to what the normal allows.
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> wanted_friction(float over_relaxation, const Lanes<W>& mass,
+                                                       const Lanes<W>& impulse,
+                                                       const Lanes<W>& speed) {
+  return impulse - Lanes<W>(over_relaxation) * mass * speed;
+}
+
 /// Coulomb friction of point `index` against its normal impulse: in the plane the impulse is held
 /// to an interval, in space to a disc.
 template <int D, int W>
@@ -170,8 +177,8 @@ template <int D, int W>
   L wanted[kTangents];
   for (int t = 0; t < kTangents; ++t) {
     speed[t] = relative_speed(tangent_of(block, t), arms, a, b);
-    wanted[t] = point.tangent_impulse[t] -
-                L(context.tuning.over_relaxation) * point.tangent_mass[t] * speed[t];
+    wanted[t] = wanted_friction(context.tuning.over_relaxation, point.tangent_mass[t],
+                                point.tangent_impulse[t], speed[t]);
   }
   slide_against(bound, point.tangent_impulse, point.tangent_mass, speed, wanted);
   hold_to_cone<kTangents>(bound, wanted);
@@ -196,18 +203,24 @@ template <int D, int W>
   apply_pair(applied * block.normal, arms, block, a, b);
 }
 
-/// How much a sweep wants to change the normal impulse. Only a soft row has a mass scale other than
-/// 1 and an impulse scale other than 0.
+/// The normal impulse that a sweep wants, before it is clamped. Only a soft row has a mass scale
+/// other than 1 and an impulse scale other than 0. The factor of the speed is worked out apart from
+/// it: rows wait for the speed, and each operation behind it is one more to wait for.
 template <int D, int W>
-[[gnu::always_inline]] inline Lanes<W> normal_change(
+[[gnu::always_inline]] inline Lanes<W> wanted_normal_impulse(
     const StepContext<D>& context, Sweep sweep, const ContactBlock<D, W>& block,
     const SoftnessLanes<W>& soft, const typename ContactBlock<D, W>::Point& point,
-    const Arms<D, Lanes<W>>& arms, const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
-  const Lanes<W> speed = relative_speed(block.normal, arms, a, b);
+    const Lanes<W>& speed) {
+  using L = Lanes<W>;
   const NormalRow<W> row = normal_row(context, sweep, block, soft, point, speed);
-  if (sweep != Sweep::kBiased) return -point.normal_mass * (speed + row.bias);
-  return -point.normal_mass * row.mass_scale * (speed + row.bias) -
-         row.impulse_scale * point.normal_impulse;
+  const L relaxation(context.tuning.over_relaxation);
+  L kept = point.normal_impulse;
+  L mass = relaxation * point.normal_mass;
+  if (sweep == Sweep::kBiased) {
+    kept -= relaxation * row.impulse_scale * point.normal_impulse;
+    mass = mass * row.mass_scale;
+  }
+  return kept - mass * (speed + row.bias);
 }
 
 /// The normal row: 0 <= normal impulse.
@@ -218,9 +231,9 @@ template <int D, int W>
                                                 typename ContactBlock<D, W>::Point& point,
                                                 MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   const Arms<D, Lanes<W>> arms = arms_of(block, point);
-  const Lanes<W> change = normal_change(context, sweep, block, soft, point, arms, a, b);
-  set_normal_impulse(point.normal_impulse + Lanes<W>(context.tuning.over_relaxation) * change, arms,
-                     block, point, a, b);
+  const Lanes<W> speed = relative_speed(block.normal, arms, a, b);
+  set_normal_impulse(wanted_normal_impulse(context, sweep, block, soft, point, speed), arms, block,
+                     point, a, b);
 }
 
 }  // namespace cycloid::solver

@@ -124,7 +124,11 @@ void ContactKernels<D, W>::warm_start(const BlockRange<D, W>& range) {
     MotionLanes<D, W> a;
     MotionLanes<D, W> b;
     gather_pair(range, *block, a, b);
-    warm_start_points(*block, a, b);
+    if constexpr (kRowsAlong<D>)
+      warm_start_along(*block, a, b);
+    else
+      warm_start_points(*block, a, b);
+    if (block->rolls) turn_pair(block->extra->rolling_impulse, *block, a, b);
     scatter_pair(range, *block, a, b);
   }
 }
@@ -137,19 +141,14 @@ struct SweptMotions {
   SoftnessLanes<W> soft;
 };
 
-/// Blocks of the plain rows: each point's normal, then each point's friction. Row by row in turn:
-/// each row waits for the one before it in its own block, and blocks of one colour share no body
-/// that moves, so the rows of one fill the time that those of the other wait.
-/// @param each  Calls what it is given for each of the blocks and its motions.
+/// The rows of plain blocks, one after the other in each block.
+/// @param each  As of sweep_plain.
 template <Sweep kSweep, int D, int W, class Each>
-[[gnu::always_inline]] inline void sweep_plain(const StepContext<D>& context,
-                                               const BlockRange<D, W>& range, const Each& each) {
+[[gnu::always_inline]] inline void sweep_rows(const StepContext<D>& context, const Each& each) {
   using Block = ContactBlock<D, W>;
   using Motions = SweptMotions<D, W>;
   std::uint32_t points = 0;
-  each([&](Block & block, Motions & m) __attribute__((always_inline)) {
-    gather_pair(range, block, m.a, m.b);
-    if (kSweep == Sweep::kBiased) m.soft = softness_of(context, block);
+  each([&](Block & block, Motions&) __attribute__((always_inline)) {
     points = points < block.point_count ? block.point_count : points;
   });
   for (std::uint32_t i = 0; i < points; ++i) {
@@ -163,6 +162,31 @@ template <Sweep kSweep, int D, int W, class Each>
     each([&](Block & block, Motions & m) __attribute__((always_inline)) {
       if (block.rubs && i < block.point_count) solve_friction(context, block, i, m.a, m.b);
     });
+}
+
+/// Blocks of the plain rows: each point's normal, then each point's friction. In turn: each row
+/// waits for the one before it in its own block, and blocks of one colour share no body that moves,
+/// so the rows of one fill the time that those of the other wait.
+/// @param each  Calls what it is given for each of the blocks and its motions.
+template <Sweep kSweep, int D, int W, class Each>
+[[gnu::always_inline]] inline void sweep_plain(const StepContext<D>& context,
+                                               const BlockRange<D, W>& range, const Each& each) {
+  using Block = ContactBlock<D, W>;
+  using Motions = SweptMotions<D, W>;
+  each([&](Block & block, Motions & m) __attribute__((always_inline)) {
+    gather_pair(range, block, m.a, m.b);
+    if (kSweep == Sweep::kBiased) m.soft = softness_of(context, block);
+  });
+  if constexpr (kRowsAlong<D>) {
+    each([&](Block & block, Motions & m) __attribute__((always_inline)) {
+      solve_normals_along(context, kSweep, block, m.soft, m.a, m.b);
+    });
+    each([&](Block & block, Motions & m) __attribute__((always_inline)) {
+      if (block.rubs) solve_frictions_along(context, block, m.a, m.b);
+    });
+  } else {
+    sweep_rows<kSweep, D, W>(context, each);
+  }
   each([&](Block & block, Motions & m)
            __attribute__((always_inline)) { scatter_pair(range, block, m.a, m.b); });
 }

@@ -2,6 +2,7 @@
 
 #include "solver/constraints/contact_cone.hpp"
 #include "solver/constraints/contact_normals.hpp"
+#include "solver/constraints/contact_plane.hpp"
 #include "solver/constraints/contact_rolling.hpp"
 
 namespace cycloid::solver {
@@ -77,8 +78,10 @@ void solve_normals_where(const Lanes<W>& wanted, const StepContext<D>& context, 
   for (std::uint32_t i = 0; i < block.point_count; ++i) {
     auto& point = block.points[i];
     const Arms<D, L> arms = arms_of(block, point);
-    const L change = normal_change(context, sweep, block, soft, point, arms, a, b);
-    set_normal_impulse(point.normal_impulse + wanted * change, arms, block, point, a, b);
+    const L speed = relative_speed(block.normal, arms, a, b);
+    const L by_row = wanted_normal_impulse(context, sweep, block, soft, point, speed);
+    set_normal_impulse(select(wanted > L(0.0f), by_row, point.normal_impulse), arms, block, point,
+                       a, b);
   }
 }
 
@@ -251,9 +254,24 @@ template <int D, int W>
 void solve_normals_in_turn(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>& block,
                            MotionLanes<D, W>& a, MotionLanes<D, W>& b) {
   const SoftnessLanes<W> soft = softness_of(context, block);
-  for (std::uint32_t i = 0; i < block.point_count; ++i)
-    solve_normal(context, sweep, block, soft,
-                 block.points[point_in_turn(context, sweep, i, block.point_count)], a, b);
+  if constexpr (kRowsAlong<D>) {
+    solve_normals_along(context, sweep, block, soft, a, b);
+  } else {
+    for (std::uint32_t i = 0; i < block.point_count; ++i)
+      solve_normal(context, sweep, block, soft,
+                   block.points[point_in_turn(context, sweep, i, block.point_count)], a, b);
+  }
+}
+
+/// The friction of its points, one after the other.
+template <int D, int W>
+void solve_frictions(const StepContext<D>& context, ContactBlock<D, W>& block, MotionLanes<D, W>& a,
+                     MotionLanes<D, W>& b) {
+  if constexpr (kRowsAlong<D>) {
+    solve_frictions_along(context, block, a, b);
+  } else {
+    for (std::uint32_t i = 0; i < block.point_count; ++i) solve_friction(context, block, i, a, b);
+  }
 }
 
 /// One sweep over the block: normals first, so that friction is held to the impulse of this sweep.
@@ -272,7 +290,7 @@ void solve_block(const StepContext<D>& context, Sweep sweep, ContactBlock<D, W>&
   if (sweep == Sweep::kPseudo) return;
   if (block.rolls) solve_rolling(block, a, b);
   if (block.rubs && together != ContactBlockRows::kNormalFriction)
-    for (std::uint32_t i = 0; i < block.point_count; ++i) solve_friction(context, block, i, a, b);
+    solve_frictions(context, block, a, b);
 }
 
 }  // namespace cycloid::solver
