@@ -72,9 +72,6 @@ struct CrossAxis {
   bool forth;    ///< It points from a to b as it is.
 };
 
-/// Where the edges' axes are parallel within 1e-3 rad there is no axis across them.
-static constexpr float kParallelSquared = 1.0e-6f;
-
 /// The first edge pair that exceeds `threshold`, and of later ones what is better beyond tolerance.
 static CrossAxis best_edges(const Solid& a, const Solid& b, const Relative& relative,
                             const AxisTolerance& tolerance, float threshold) {

@@ -31,6 +31,9 @@ struct AxisTolerance {
   float beyond_faces(float best) const { return best + edge + edge_of_depth * max(-best, 0.0f); }
 };
 
+/// Edges that are parallel within 1e-3 rad have no axis across them: the square of their sine.
+inline constexpr float kParallelSquared = 1.0e-6f;
+
 /// Lower than any separation, and finite with a tolerance added.
 inline constexpr float kNoSeparation = -1.0e30f;
 

@@ -90,9 +90,6 @@ static void try_arcs(const Arc& a, const Arcs& arcs, std::uint32_t count, float*
   }
 }
 
-/// Edges that are parallel within 1e-3 rad have no axis.
-static constexpr float kParallelArcsSquared = 1.0e-6f;
-
 /// The first edge pair that exceeds `threshold`, and of later ones what is better beyond tolerance.
 static EdgeAxis best_edges(const Solid& a, const Edges& edges_a, const Solid& b,
                            const Edges& edges_b, const AxisTolerance& tolerance, float threshold) {
@@ -111,7 +108,7 @@ static EdgeAxis best_edges(const Solid& a, const Edges& edges_a, const Solid& b,
       Vec<3> across = cross(arc_a.along, arc_b.along);
       const float squared = dot(across, across);
       const float parallel =
-          kParallelArcsSquared * dot(arc_a.along, arc_a.along) * dot(arc_b.along, arc_b.along);
+          kParallelSquared * dot(arc_a.along, arc_a.along) * dot(arc_b.along, arc_b.along);
       if (squared <= parallel) continue;
       if (dot(across, middle) < 0.0f) across = -across;
       const float size = sqrt(squared);
