@@ -8,6 +8,7 @@
 
 #include "solver/active_bodies.hpp"
 #include "solver/collision/bounds_tree.hpp"
+#include "solver/collision/held_pairs.hpp"
 #include "solver/collision/manifold.hpp"
 #include "solver/collision/pair_cache.hpp"
 #include "solver/coloring.hpp"
@@ -104,6 +105,7 @@ struct KeptByWorld {
   PairCache<D> pair_cache;     ///< Whoever changes a pose, filter, shape or joint makes it forget.
   ActiveBodies active_bodies;  ///< Whoever changes a velocity, force or sleep touches it.
   ActiveContacts active_contacts;
+  HeldPairs<D> held_pairs;  ///< Of the last tick; whoever changes a shape makes it forget them.
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
 };
@@ -116,6 +118,7 @@ struct ContactList {
   std::vector<std::uint32_t> began;  ///< Contacts that touch and did not.
   std::vector<std::uint32_t> ended;  ///< Contacts of the state that no longer touch.
   std::vector<Manifold<D>> found;    ///< Of a batch of pairs; empty where shapes are apart.
+  HeldPairs<D> held_pairs;           ///< For the next tick.
 };
 
 /// Everything a step computes and throws away: nothing in here that shows outlives a tick, so

@@ -4,7 +4,6 @@
 
 #include "solver/collision/hull.hpp"
 #include "solver/collision/solid.hpp"
-#include "solver/collision/solid_apart.hpp"
 
 namespace cycloid::solver {
 
@@ -106,10 +105,6 @@ static Manifold<3> against_surface(const Placed<3>& a, const Placed<3>& b, float
 
 static Manifold<3> against_solid(const Placed<3>& a, const Placed<3>& b, float margin) {
   const bool boxes = a.shape.kind == ShapeKind::kBox && b.shape.kind == ShapeKind::kBox;
-  if (!boxes && !is_rod(b.shape) &&
-      a_face_parts(a.shape, a.rotation, b.shape, b.rotation, b.position - a.position, a.polyhedra,
-                   margin))
-    return {};
   Solid solid_a;
   place(a.shape, a.polyhedra, a.rotation, a.position, solid_a);
   if (is_rod(b.shape)) return solid_against_rod(solid_a, rod_of(b), margin);

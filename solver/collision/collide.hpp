@@ -1,5 +1,6 @@
 #pragma once
 
+#include "solver/collision/held_pairs.hpp"
 #include "solver/collision/placed_pair.hpp"
 #include "solver/state.hpp"
 
@@ -22,9 +23,10 @@ struct Collider {
   const Polyhedra& polyhedra;
   int lanes;  ///< A width of Lanes: of equal kinds of pairs so many are collided at once.
 
-  /// manifolds[i] becomes what `collide` gives of pairs[i], for i in [0, count), for every width.
-  /// @pre count <= kPairGrain.
-  void operator()(const PlacedPair<D>* pairs, int count, Manifold<D>* manifolds) const;
+  /// manifolds[i] becomes what `collide_held` gives of pairs[i], for i in [0, count), for every
+  /// width. @pre count <= kPairGrain; the keys of the pairs ascend.
+  void operator()(const PlacedPair<D>* pairs, int count, Manifold<D>* manifolds,
+                  PairMemory<D>& memory) const;
 };
 
 /// How many pairs are collided by one call.

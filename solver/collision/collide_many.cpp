@@ -102,7 +102,8 @@ static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* p
 }
 
 template <>
-void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>* manifolds) const {
+void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>* manifolds,
+                             PairMemory<2>&) const {
   OneByOne one_by_one;
   Waiting by_balls[3];  // By how many of the two are balls.
   for (int i = 0; i < count; ++i) {
@@ -123,11 +124,14 @@ void Collider<2>::operator()(const PlacedPair<2>* pairs, int count, Manifold<2>*
 }
 
 template <>
-void Collider<3>::operator()(const PlacedPair<3>* pairs, int count, Manifold<3>* manifolds) const {
+void Collider<3>::operator()(const PlacedPair<3>* pairs, int count, Manifold<3>* manifolds,
+                             PairMemory<3>& memory) const {
   for (int i = 0; i < count; ++i) {
     const PlacedPair<3>& pair = pairs[i];
-    manifolds[i] = collide(shapes[pair.shape_a], pair.pose_a, shapes[pair.shape_b], pair.pose_b,
-                           pair.margin, polyhedra);
+    const Shape<3>& a = shapes[pair.shape_a];
+    const Shape<3>& b = shapes[pair.shape_b];
+    manifolds[i] = is_held(a, b) ? memory.collide(pair)
+                                 : collide(a, pair.pose_a, b, pair.pose_b, pair.margin, polyhedra);
   }
 }
 

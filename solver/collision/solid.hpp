@@ -82,15 +82,19 @@ struct Candidate {
 /// Fewer than four where the others add nothing.
 void reduce(std::span<const Candidate> candidates, Manifold<3>& manifold);
 
+/// Of a feature: the reference face is one of b; or there is none.
+inline constexpr std::uint32_t kReferenceOnB = 0x80000000u;
+inline constexpr std::uint32_t kOfNoFace = 0x40000000u;
+
 /// The feature of a point: unique within a manifold, and the same while the same features touch.
 /// `reference` tells which shape has the reference face; `face` and `edge` count at most 255.
 constexpr std::uint32_t clip_feature(bool on_b, std::uint32_t reference_face,
                                      std::uint32_t incident_edge, std::uint32_t clip_edge) {
-  return (on_b ? 0x80000000u : 0u) | (reference_face << 20) | (incident_edge << 10) | clip_edge;
+  return (on_b ? kReferenceOnB : 0u) | (reference_face << 20) | (incident_edge << 10) | clip_edge;
 }
 /// In place of a clip edge: the point is a corner of the incident solid, in place of its edge.
 inline constexpr std::uint32_t kCorner = 0x3ffu;
 /// The feature of nearest points that are not on an axis of either solid's own.
-inline constexpr std::uint32_t kNearest = 0x60000000u;
+inline constexpr std::uint32_t kNearest = kOfNoFace | 0x20000000u;
 
 }  // namespace cycloid::solver

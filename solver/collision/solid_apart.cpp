@@ -60,15 +60,15 @@ static float reach_against(const OwnSolid& solid, const Vec<3>& direction) {
       [&]<int W>() { return SolidKernels<W>::lowest_along(corners, count, direction); });
 }
 
+/// How far outside of a face of a all of b is, m, where its middle is farther than the margin.
 /// @param to_b  from the middle of a to that of b, in the frame of the collision, m.
-static bool face_of_a_parts(const OwnSolid& a, const OwnSolid& b, const Vec<3>& to_b,
-                            float margin) {
+static float gap_beside_a(const OwnSolid& a, const OwnSolid& b, const Vec<3>& to_b, float margin) {
   const Vec<3> centre = rotate_back(a.rotation, to_b);
   const Plane plane = face_towards(a, centre);
   const float height = dot(plane.normal, centre) - plane.offset;
-  if (height <= margin) return false;
+  if (height <= margin) return 0.0f;
   const Vec<3> normal = rotate_back(b.rotation, rotate(a.rotation, plane.normal));
-  return height - reach_against(b, normal) > margin;
+  return height - reach_against(b, normal);
 }
 
 static OwnSolid own_solid(const Shape<3>& shape, const Rotation<3>& rotation,
@@ -78,17 +78,29 @@ static OwnSolid own_solid(const Shape<3>& shape, const Rotation<3>& rotation,
   return solid;
 }
 
-bool a_face_parts(const Shape<3>& a, const Rotation<3>& rotation_a, const Shape<3>& b,
-                  const Rotation<3>& rotation_b, const Vec<3>& a_to_b, const Polyhedra& polyhedra,
-                  float margin) {
-  const OwnSolid own_a = own_solid(a, rotation_a, polyhedra);
-  const OwnSolid own_b = own_solid(b, rotation_b, polyhedra);
-  const Vec<3> from = rotate(rotation_a, a.vertices[0]);
-  const Vec<3> to_b = a_to_b + rotate(rotation_b, b.vertices[0]) - from;
+bool may_be_parted(const Shape<3>& a, const Shape<3>& b) {
+  const bool hull_a = a.kind == ShapeKind::kHull;
+  const bool hull_b = b.kind == ShapeKind::kHull;
+  return (hull_a || a.kind == ShapeKind::kBox) && (hull_b || b.kind == ShapeKind::kBox) &&
+         (hull_a || hull_b);
+}
+
+FaceGap gap_beside_a_face(const Shape<3>& a, const Shape<3>& b, const PlacedPair<3>& pair,
+                          bool b_first, const Polyhedra& polyhedra, float margin) {
+  const OwnSolid own_a = own_solid(a, pair.pose_a.rotation, polyhedra);
+  const OwnSolid own_b = own_solid(b, pair.pose_b.rotation, polyhedra);
+  const Vec<3> a_to_b = pair.pose_b.position - pair.pose_a.position;
+  const Vec<3> from = rotate(pair.pose_a.rotation, a.vertices[0]);
+  const Vec<3> to_b = a_to_b + rotate(pair.pose_b.rotation, b.vertices[0]) - from;
   const float lengths =
       length(a_to_b) + length(from) + length(a.half) + length(b.vertices[0]) + length(b.half);
-  const float safe = margin + kFaceToleranceMax + kRounding * lengths;
-  return face_of_a_parts(own_a, own_b, to_b, safe) || face_of_a_parts(own_b, own_a, -to_b, safe);
+  const float unsure = kFaceToleranceMax + kRounding * lengths;
+  const auto ask = [&](bool of_b) {
+    return of_b ? gap_beside_a(own_b, own_a, -to_b, margin + unsure)
+                : gap_beside_a(own_a, own_b, to_b, margin + unsure);
+  };
+  if (const float gap = ask(b_first) - unsure; gap > margin) return {gap, b_first};
+  return {ask(!b_first) - unsure, !b_first};
 }
 
 }  // namespace cycloid::solver

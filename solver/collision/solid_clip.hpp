@@ -139,7 +139,7 @@ Manifold<3> touch_edges(const EdgePair& pair, const AxisTolerance& tolerance, fl
 
 /// The feature of a point between two edges, unlike any of `clip_feature`.
 constexpr std::uint32_t edge_feature(std::uint32_t edge_a, std::uint32_t edge_b) {
-  return 0x40000000u | (edge_a >> 1 << 10) | (edge_b >> 1);
+  return kOfNoFace | (edge_a >> 1 << 10) | (edge_b >> 1);
 }
 
 }  // namespace cycloid::solver

@@ -102,6 +102,7 @@ static void clear(ContactList<D>& list) {
   list.live.clear();
   list.began.clear();
   list.ended.clear();
+  clear(list.held_pairs);
 }
 
 /// Lists the contacts of a range of the pairs, and the old ones from the first of them up to the
@@ -116,12 +117,14 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
   std::uint32_t old = range.begin > 0 ? contacts.lower_bound(key_at(range.begin)) : 0;
   list.found.resize(kPairGrain);
   MaterialPair materials(state.materials);
+  PairMemory<D> memory(state, scratch.kept->held_pairs,
+                       range.begin < range.end ? key_at(range.begin) : 0, list.held_pairs);
   for (int begin = range.begin; begin < range.end; begin += kPairGrain) {
     const int size = std::min(kPairGrain, range.end - begin);
     PlacedPair<D> batch[kPairGrain];
     for (int i = 0; i < size; ++i)
       batch[i] = placed(context, state, pairs[static_cast<std::size_t>(begin + i)]);
-    collider(batch, size, list.found.data());
+    collider(batch, size, list.found.data(), memory);
     for (int i = 0; i < size; ++i) {
       pass_old(contacts, key_of(batch[i]), old, list);
       add_contact(state, contacts, batch[i], list.found[static_cast<std::size_t>(i)], materials,
@@ -131,6 +134,9 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
   const bool is_last = range.end == static_cast<int>(pairs.size());
   pass_old(contacts, is_last ? ~std::uint64_t{0} : key_at(range.end), old, list);
 }
+
+/// Pairs that a thread takes at once.
+static constexpr int kChunk = 8 * kPairGrain;
 
 /// Appends the lists of all chunks to the step's. Which contacts those are, by number, depends on
 /// how many the chunks before hold.
@@ -143,6 +149,7 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
     for (const std::uint32_t began : chunk.began)
       scratch.began.push_back(static_cast<std::uint32_t>(contacts) + began);
     scratch.ended.insert(scratch.ended.end(), chunk.ended.begin(), chunk.ended.end());
+    append(chunk.held_pairs, scratch.held_pairs);
     for (LiveContact<D>& one : chunk.live) one.contact += static_cast<std::uint32_t>(contacts);
     contacts += chunk.contacts.size();
     live += chunk.live.size();
@@ -163,6 +170,23 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
   });
 }
 
+/// As collide_range of all pairs, by several threads.
+template <int D>
+static void collide_chunks(const Collider<D>& collider, const StepContext<D>& context,
+                           const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
+  const int count = static_cast<int>(scratch.pairs.size());
+  const auto chunks = static_cast<std::size_t>((count + kChunk - 1) / kChunk);
+  if (scratch.contact_chunks.size() < chunks) scratch.contact_chunks.resize(chunks);
+  workers.parallel_for(count, kChunk, [&](Range range) {
+    ContactList<D>& list = scratch.contact_chunks[static_cast<std::size_t>(range.begin / kChunk)];
+    clear(list);
+    list.contacts.reserve(kChunk);
+    list.live.reserve(kChunk);
+    collide_range(collider, context, state, scratch, range, list);
+  });
+  join_lists(chunks, workers, scratch);
+}
+
 /// The contact points of every pair, with last tick's impulses where the same features met, and
 /// which contacts began and ended.
 ///
@@ -174,24 +198,16 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
 template <int D>
 void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch) {
-  constexpr int kChunk = 8 * kPairGrain;
   const Collider<D> collider{state.shapes.data(), state.polyhedra, widest_lanes(context.lanes)};
   const int count = static_cast<int>(scratch.pairs.size());
   clear<D>(scratch);
   list_active_contacts(state, scratch);
   scratch.contacts_are_all = scratch.kept->active_contacts.are_all;
   if (workers.count() == 1 || count <= kChunk)
-    return collide_range<D>(collider, context, state, scratch, {0, count}, scratch);
-  const auto chunks = static_cast<std::size_t>((count + kChunk - 1) / kChunk);
-  if (scratch.contact_chunks.size() < chunks) scratch.contact_chunks.resize(chunks);
-  workers.parallel_for(count, kChunk, [&](Range range) {
-    ContactList<D>& list = scratch.contact_chunks[static_cast<std::size_t>(range.begin / kChunk)];
-    clear(list);
-    list.contacts.reserve(kChunk);
-    list.live.reserve(kChunk);
-    collide_range(collider, context, state, scratch, range, list);
-  });
-  join_lists(chunks, workers, scratch);
+    collide_range<D>(collider, context, state, scratch, {0, count}, scratch);
+  else
+    collide_chunks(collider, context, state, workers, scratch);
+  scratch.kept->held_pairs = scratch.held_pairs;
 }
 
 template void collide_pairs(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);

@@ -98,6 +98,7 @@ static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
   cache.forgotten.clear();
   cache.fat.clear();
   scratch.kept->active_bodies.forget_all();
+  clear(scratch.kept->held_pairs);
   list_jointed_bodies(state, cache);
   if (!cache.statics_are_known) list_statics(state, scratch);
   cache.statics_are_known = true;
@@ -123,6 +124,7 @@ static void forget_changed(const WorldState<D>& state, StepScratch<D>& scratch) 
     scratch.looking.push_back(shape);
   }
   cache.forgotten.clear();
+  clear(scratch.kept->held_pairs);
   list_jointed_bodies(state, cache);
 }
 

@@ -96,8 +96,7 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
                              contact.shape_a,
                              contact.shape_b,
                              context.tuning.speculative_distance};
-    const Manifold<D> manifold =
-        collide(a, pair.pose_a, b, pair.pose_b, pair.margin, state.polyhedra);
+    const Manifold<D> manifold = collide_held(state, pair);
     // Neither body has moved since the contact was kept, so its points and impulses still belong to
     // each other; a contact that is gone all the same is solved as one without points.
     if (manifold.point_count == 0 || manifold.point_count != contact.point_count) continue;

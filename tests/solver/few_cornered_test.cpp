@@ -130,6 +130,9 @@ TEST(FewCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
   std::set<std::uint32_t> features;
   std::set<std::uint32_t> of_capsules;
   std::set<std::uint32_t> of_balls;
+  const WorldState<2> none;
+  const HeldPairs<2> before;
+  HeldPairs<2> now;
   for (int round = 0; round < 2000; ++round) {
     const int count = 1 + static_cast<int>(random() % kPairGrain);
     const Crowd made = crowd(random, count);
@@ -146,7 +149,8 @@ TEST(FewCornered, PairsCollideToTheSameBitsAtEveryWidthAndInEveryCrowd) {
     }
     for (const int lanes : widths()) {
       std::vector<Manifold<2>> found(made.pairs.size());
-      Collider<2>{made.shapes.data(), {}, lanes}(made.pairs.data(), count, found.data());
+      PairMemory<2> memory(none, before, 0, now);
+      Collider<2>{made.shapes.data(), {}, lanes}(made.pairs.data(), count, found.data(), memory);
       for (std::size_t i = 0; i < found.size(); ++i) {
         SCOPED_TRACE(testing::Message() << "round " << round << ", pair " << i << " of " << count
                                         << ", lanes " << lanes);

@@ -30,7 +30,8 @@ static Throws throw_beside(const Shape<3>& a, const Shape<3>& b, const Polyhedra
     const Solid solid_a = placed(a, {Vec<3>::zero(), pose_a.rotation}, pool);
     const Solid solid_b = placed(b, {a_to_b, pose_b.rotation}, pool);
     const Manifold<3> manifold = solid_against_solid(solid_a, solid_b, kMargin);
-    const bool parted = a_face_parts(a, pose_a.rotation, b, pose_b.rotation, a_to_b, pool, kMargin);
+    const PlacedPair<3> pair{pose_a, pose_b, 0, 0, kMargin};
+    const bool parted = gap_beside_a_face(a, b, pair, i % 2 == 0, pool, kMargin).gap > kMargin;
     if (manifold.point_count == 0) ++throws.apart;
     if (parted) ++throws.parted;
     EXPECT_FALSE(parted && manifold.point_count > 0) << "throw " << i;
@@ -59,13 +60,26 @@ TEST(SolidsApart, AreToldByAFaceOnlyWhereNoPointIsNear) {
 
 TEST(SolidsApart, AreNotToldWhereAFaceIsNearerThanTheMargin) {
   const Shape<3> cube = solid_box(0.5f, 0.5f, 0.5f);
-  const Rotation<3> none = identity_rotation<3>();
   const auto parts = [&](float gap) {
-    return a_face_parts(cube, none, cube, none, {{0.0f, 1.0f + gap, 0.3f}}, {}, kMargin);
+    const PlacedPair<3> pair{at(0.0f, 0.0f, 0.0f), at(0.0f, 1.0f + gap, 0.3f), 0, 0, kMargin};
+    return gap_beside_a_face(cube, cube, pair, false, {}, kMargin).gap > kMargin;
   };
   EXPECT_FALSE(parts(kMargin));
   EXPECT_FALSE(parts(kMargin + 4.0e-4f));  // A face before it might be taken for the axis.
   EXPECT_TRUE(parts(kMargin + 7.0e-4f));
+}
+
+TEST(SolidsApart, TellWhoseFaceIsAndHowFarItParts) {
+  const Shape<3> wide = solid_box(2.0f, 0.5f, 2.0f);
+  const Shape<3> cube = solid_box(0.5f, 0.5f, 0.5f);
+  // The cube stands on an edge over the wide box, of which alone a face parts the two by all of it.
+  const Pose<3> above{{{0.3f, 1.5f, 0.0f}}, turn_about({{0, 0, 1}}, M_PI / 4.0)};
+  const PlacedPair<3> pair{at(0.0f, 0.0f, 0.0f), above, 0, 0, kMargin};
+  for (const bool b_first : {false, true}) {
+    const FaceGap found = gap_beside_a_face(wide, cube, pair, b_first, {}, kMargin);
+    EXPECT_FALSE(found.of_b);
+    EXPECT_NEAR(found.gap, 1.0f - 0.5f * std::sqrt(2.0f), 1.0e-3f);
+  }
 }
 
 }  // namespace cycloid::solver
