@@ -19,15 +19,13 @@ namespace {
 struct TrialsOptions {
   std::vector<std::string> names;
   std::vector<std::string> methods;
-  bool large = false;
   Sampling sampling;
   TrialsOutput output;
 };
 
 std::vector<scenes::Trial> chosen_trials(const TrialsOptions& options) {
   std::vector<scenes::Trial> found;
-  for (const scenes::Trial& trial : scenes::trials())
-    if (options.names.empty() && (options.large || !trial.large)) found.push_back(trial);
+  if (options.names.empty()) found.assign(scenes::trials().begin(), scenes::trials().end());
   for (const std::string& name : options.names) {
     const std::size_t before = found.size();
     for (const scenes::Trial& trial : scenes::trials())
@@ -157,7 +155,6 @@ void add_trials(CLI::App& app, Action& action) {
                       "Compare with this table of outcomes, or of shares");
   command->add_option("--write", options->output.write,
                       "Write the outcomes, or shares, into this table");
-  command->add_flag("--large", options->large, "Also those that take minutes");
   command->add_flag("--markdown", options->output.markdown,
                     "Print a table as in docs/stability.md");
   Sampling& sampling = options->sampling;

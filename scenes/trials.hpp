@@ -12,7 +12,6 @@ struct Trial {
   int row;              ///< In docs/stability.md; several trials may share one.
   const char* name;     ///< "trial-stack-30"
   std::uint32_t ticks;  ///< How long it takes to show.
-  bool large;           ///< Takes minutes: left out of tests, judged by `cycloid trials --large`.
   Scene (*make)();
 };
 

@@ -71,7 +71,7 @@ std::vector<accuracy::SceneChart> charts_of(const Command& command) {
   std::vector<accuracy::SceneChart> charts;
   for (const std::string& name : command.scenes) charts.push_back(find_chart(name));
   for (const scenes::Trial& trial : scenes::trials())
-    if (command.all_trials && !trial.large) charts.push_back(chart_of_trial(trial));
+    if (command.all_trials) charts.push_back(chart_of_trial(trial));
   return charts;
 }
 
