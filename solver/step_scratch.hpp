@@ -110,6 +110,16 @@ struct KeptByWorld {
   StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
 };
 
+/// Places among all contacts of a tick, for as many as a chunk of its pairs had in the tick before.
+template <int D>
+struct ContactRoom {
+  Contact<D>* contacts = nullptr;
+  LiveContact<D>* live = nullptr;
+  std::uint32_t first = 0;  ///< Place of the first among all.
+  std::uint32_t size = 0;
+  std::uint32_t used = 0;
+};
+
 /// The contacts of a tick in the order of their shapes, or those of one chunk of its pairs.
 template <int D>
 struct ContactList {
@@ -119,6 +129,7 @@ struct ContactList {
   std::vector<std::uint32_t> ended;  ///< Contacts of the state that no longer touch.
   std::vector<Manifold<D>> found;    ///< Of a batch of pairs; empty where shapes are apart.
   HeldPairs<D> held_pairs;           ///< For the next tick.
+  ContactRoom<D> room;               ///< Of a chunk: the first contacts are there, and in no list.
 };
 
 /// Everything a step computes and throws away: nothing in here that shows outlives a tick, so

@@ -39,18 +39,16 @@ class MaterialPair {
   bool has_extra_ = false;
 };
 
-/// Appends to `list` what is at hand of the contact in place `contact` among all.
+/// What is at hand of the contact in place `contact` among all.
 /// Inlined, as a call for each contact is a tenth of the stage.
 /// @param pair  With the poses that the manifold is of.
 template <int D>
-[[gnu::always_inline]] inline void add_live(const WorldState<D>& state, const PlacedPair<D>& pair,
+[[gnu::always_inline]] inline void set_live(const WorldState<D>& state, const PlacedPair<D>& pair,
                                             const Manifold<D>& manifold, std::uint32_t contact,
-                                            MaterialPair& materials,
-                                            std::vector<LiveContact<D>>& list) {
+                                            MaterialPair& materials, LiveContact<D>& live) {
   const Shape<D>& a = state.shapes[pair.shape_a];
   const Shape<D>& b = state.shapes[pair.shape_b];
   materials.look_up(a.material, b.material);
-  LiveContact<D>& live = list.emplace_back();
   live.manifold = manifold;
   live.between = pair.pose_b.position - pair.pose_a.position;
   live.square_friction = materials.square_friction();

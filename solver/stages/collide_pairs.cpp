@@ -75,34 +75,48 @@ static std::uint64_t key_of(const PlacedPair<D>& pair) {
   return ShapePair{pair.shape_a, pair.shape_b}.key();
 }
 
+template <int D>
+static std::uint32_t count_of(const ContactList<D>& list) {
+  return list.room.used + static_cast<std::uint32_t>(list.contacts.size());
+}
+
 /// Lists the contact of a pair with points. `old` is where to go on among the old contacts.
 template <int D>
 static void add_contact(const WorldState<D>& state, const OldContacts<D>& contacts,
                         const PlacedPair<D>& pair, const Manifold<D>& manifold,
                         MaterialPair& materials, std::uint32_t& old, ContactList<D>& list) {
   if (manifold.point_count == 0) return;
-  add_live(state, pair, manifold, static_cast<std::uint32_t>(list.contacts.size()), materials,
-           list.live);
+  const std::uint32_t number = count_of(list);
+  ContactRoom<D>& room = list.room;
+  const bool has_room = room.used < room.size;
+  LiveContact<D>& live = has_room ? room.live[room.used] : list.live.emplace_back();
+  Contact<D>& contact = has_room ? room.contacts[room.used++] : list.contacts.emplace_back();
+  if (has_room) contact = {};
+  set_live(state, pair, manifold, room.first + number, materials, live);
   const bool persists = old < contacts.size() && contacts.key(old) == key_of(pair);
   const Contact<D>* before = persists ? &contacts[old] : nullptr;
-  Contact<D>& contact = list.contacts.emplace_back();
   contact.shape_a = pair.shape_a;
   contact.shape_b = pair.shape_b;
   take_points(manifold, state.header.tuning.slop, before, contact);
   const bool touched = persists && before->touching != 0;
-  if (contact.touching != 0 && !touched)
-    list.began.push_back(static_cast<std::uint32_t>(list.contacts.size() - 1));
+  if (contact.touching != 0 && !touched) list.began.push_back(number);
   if (contact.touching == 0 && touched) list.ended.push_back(contacts.place(old));
   if (persists) ++old;
 }
 
+/// All but contacts and live ones.
+template <int D>
+static void clear_lists(ContactList<D>& list) {
+  list.began.clear();
+  list.ended.clear();
+  clear(list.held_pairs);
+  list.room = {};
+}
 template <int D>
 static void clear(ContactList<D>& list) {
   list.contacts.clear();
   list.live.clear();
-  list.began.clear();
-  list.ended.clear();
-  clear(list.held_pairs);
+  clear_lists(list);
 }
 
 /// Lists the contacts of a range of the pairs, and the old ones from the first of them up to the
@@ -138,50 +152,79 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
 /// Pairs that a thread takes at once.
 static constexpr int kChunk = 8 * kPairGrain;
 
+/// The room of the chunk of these pairs. @pre contacts and live ones are as many as the old ones.
+template <int D>
+static ContactRoom<D> room_of(const OldContacts<D>& old, Range range, StepScratch<D>& scratch) {
+  const auto place_of = [&](int pair) {
+    if (pair == 0) return 0u;
+    if (pair == static_cast<int>(scratch.pairs.size())) return old.size();
+    return old.lower_bound(scratch.pairs[static_cast<std::size_t>(pair)].key());
+  };
+  const std::uint32_t first = place_of(range.begin);
+  return {scratch.contacts.data() + first, scratch.live.data() + first, first,
+          place_of(range.end) - first, 0};
+}
+
+/// Puts the contacts of chunks one behind the other, where they did not just fill their rooms.
+template <int D>
+static void move_together(std::size_t chunks, Workers& workers, StepScratch<D>& scratch) {
+  const auto listed = [&](std::size_t end) {
+    std::size_t count = 0;
+    for (std::size_t c = 0; c < end; ++c) count += count_of(scratch.contact_chunks[c]);
+    return count;
+  };
+  std::vector<Contact<D>>& contacts = scratch.merged_contacts;
+  std::vector<LiveContact<D>>& live = scratch.live_before;
+  contacts.resize(listed(chunks));
+  live.resize(contacts.size());
+  workers.parallel_for(static_cast<int>(chunks), 1, [&](Range range) {
+    const ContactList<D>& chunk = scratch.contact_chunks[static_cast<std::size_t>(range.begin)];
+    const auto begin = static_cast<std::ptrdiff_t>(listed(static_cast<std::size_t>(range.begin)));
+    const ContactRoom<D>& room = chunk.room;
+    const auto contact =
+        std::copy(room.contacts, room.contacts + room.used, contacts.begin() + begin);
+    std::copy(chunk.contacts.begin(), chunk.contacts.end(), contact);
+    const auto place = std::copy(room.live, room.live + room.used, live.begin() + begin);
+    const auto end = std::copy(chunk.live.begin(), chunk.live.end(), place);
+    auto number = static_cast<std::uint32_t>(begin);
+    for (auto one = live.begin() + begin; one != end; ++one) one->contact = number++;
+  });
+  scratch.contacts.swap(contacts);
+  scratch.live.swap(live);
+}
+
 /// Appends the lists of all chunks to the step's. Which contacts those are, by number, depends on
 /// how many the chunks before hold.
 template <int D>
 static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scratch) {
-  std::size_t contacts = 0;
-  std::size_t live = 0;
+  std::uint32_t contacts = 0;
+  bool all_fit = true;
   for (std::size_t c = 0; c < chunks; ++c) {
-    ContactList<D>& chunk = scratch.contact_chunks[c];
-    for (const std::uint32_t began : chunk.began)
-      scratch.began.push_back(static_cast<std::uint32_t>(contacts) + began);
+    const ContactList<D>& chunk = scratch.contact_chunks[c];
+    for (const std::uint32_t began : chunk.began) scratch.began.push_back(contacts + began);
     scratch.ended.insert(scratch.ended.end(), chunk.ended.begin(), chunk.ended.end());
     append(chunk.held_pairs, scratch.held_pairs);
-    for (LiveContact<D>& one : chunk.live) one.contact += static_cast<std::uint32_t>(contacts);
-    contacts += chunk.contacts.size();
-    live += chunk.live.size();
+    contacts += count_of(chunk);
+    all_fit = all_fit && count_of(chunk) == chunk.room.size;
   }
-  scratch.contacts.resize(contacts);
-  scratch.live.resize(live);
-  workers.parallel_for(static_cast<int>(chunks), 1, [&](Range range) {
-    std::size_t contact = 0;
-    std::size_t place = 0;
-    const auto own = static_cast<std::size_t>(range.begin);
-    for (std::size_t c = 0; c < own; ++c) {
-      contact += scratch.contact_chunks[c].contacts.size();
-      place += scratch.contact_chunks[c].live.size();
-    }
-    const ContactList<D>& chunk = scratch.contact_chunks[own];
-    std::copy(chunk.contacts.begin(), chunk.contacts.end(), scratch.contacts.begin() + contact);
-    std::copy(chunk.live.begin(), chunk.live.end(), scratch.live.begin() + place);
-  });
+  if (!all_fit) move_together(chunks, workers, scratch);
 }
 
-/// As collide_range of all pairs, by several threads.
+/// As collide_range of all pairs, by several threads. As many contacts of a chunk as there were in
+/// the tick before are written to where they were among all: at rest that is where they belong.
 template <int D>
 static void collide_chunks(const Collider<D>& collider, const StepContext<D>& context,
                            const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   const int count = static_cast<int>(scratch.pairs.size());
   const auto chunks = static_cast<std::size_t>((count + kChunk - 1) / kChunk);
+  const OldContacts<D> old(state, scratch.kept->active_contacts);
+  scratch.contacts.resize(old.size());
+  scratch.live.resize(old.size());
   if (scratch.contact_chunks.size() < chunks) scratch.contact_chunks.resize(chunks);
   workers.parallel_for(count, kChunk, [&](Range range) {
     ContactList<D>& list = scratch.contact_chunks[static_cast<std::size_t>(range.begin / kChunk)];
     clear(list);
-    list.contacts.reserve(kChunk);
-    list.live.reserve(kChunk);
+    list.room = room_of(old, range, scratch);
     collide_range(collider, context, state, scratch, range, list);
   });
   join_lists(chunks, workers, scratch);
@@ -200,13 +243,15 @@ void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Wo
                    StepScratch<D>& scratch) {
   const Collider<D> collider{state.shapes.data(), state.polyhedra, widest_lanes(context.lanes)};
   const int count = static_cast<int>(scratch.pairs.size());
-  clear<D>(scratch);
   list_active_contacts(state, scratch);
   scratch.contacts_are_all = scratch.kept->active_contacts.are_all;
-  if (workers.count() == 1 || count <= kChunk)
-    collide_range<D>(collider, context, state, scratch, {0, count}, scratch);
-  else
+  if (workers.count() > 1 && count > kChunk) {
+    clear_lists<D>(scratch);
     collide_chunks(collider, context, state, workers, scratch);
+  } else {
+    clear<D>(scratch);
+    collide_range<D>(collider, context, state, scratch, {0, count}, scratch);
+  }
   scratch.kept->held_pairs = scratch.held_pairs;
 }
 

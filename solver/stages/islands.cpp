@@ -100,7 +100,7 @@ static void collide_woken(const StepContext<D>& context, const WorldState<D>& st
     // Neither body has moved since the contact was kept, so its points and impulses still belong to
     // each other; a contact that is gone all the same is solved as one without points.
     if (manifold.point_count == 0 || manifold.point_count != contact.point_count) continue;
-    add_live(state, pair, manifold, i, materials, scratch.live);
+    set_live(state, pair, manifold, i, materials, scratch.live.emplace_back());
   }
 }
 

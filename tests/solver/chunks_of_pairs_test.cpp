@@ -2,7 +2,7 @@
 
 #include <algorithm>
 
-#include "tests/solver/world_fixture.hpp"
+#include "tests/solver/space_fixture.hpp"
 
 namespace cycloid::solver {
 
@@ -46,6 +46,63 @@ TEST(ChunksOfPairs, GiveWhatOneThreadListsAtOnce) {
   }
   EXPECT_GT(asleep_most, 600u) << "or no contact was kept as it is";
   EXPECT_GT(pairs_most, 4u * 512u) << "or there were no chunks";
+}
+
+/// Towers of two boxes on a broad one. None of them sleeps.
+template <int D>
+static World<D> towers(const ShapeDef<D>& cube, const ShapeDef<D>& floor) {
+  WorldDef<D> def = with_gravity<D>();
+  def.tuning.sleep_s = 0.0f;
+  World<D> world = make_world(def);
+  BodyDef<D> ground;
+  ground.kind = BodyKind::kStatic;
+  add(world, ground, floor);
+  for (int i = 0; i < 2000; ++i) {
+    Vec<D> position = Vec<D>::zero();
+    position[0] = 0.6f * static_cast<float>(i / 2 - 500);
+    position[1] = i % 2 == 0 ? 1.24f : 1.74f;
+    add_at(world, position, cube);
+  }
+  return world;
+}
+
+/// Takes a box out of the middle in one tick, and hits every third in another.
+template <int D>
+static void disturb(int tick, World<D>& world) {
+  const std::vector<BodyView<D>> bodies = world.bodies();
+  Vec<D> aside = Vec<D>::zero();
+  aside[0] = 3.0f;
+  for (std::size_t i = 1; i < 1900; i += 3) {
+    if (tick != 16) continue;
+    EXPECT_TRUE(world.set_velocity(bodies[i].id, aside, Spin<D>::zero()).ok());
+  }
+  if (tick == 8) {
+    EXPECT_TRUE(world.destroy_body(bodies[1001].id).ok());
+  }
+}
+
+/// By three threads as by one.
+template <int D>
+static void expect_one_list(const ShapeDef<D>& cube, const ShapeDef<D>& floor) {
+  World<D> alone = towers(cube, floor);
+  World<D> shared = towers(cube, floor);
+  ASSERT_TRUE(shared.set_workers(3).ok());
+  for (int tick = 0; tick < 24; ++tick) {
+    for (World<D>* world : {&alone, &shared}) {
+      disturb(tick, *world);
+      ASSERT_TRUE(world->step().ok());
+    }
+    ASSERT_EQ(alone.digest(), shared.digest()) << "tick " << tick;
+    ASSERT_TRUE(std::ranges::equal(alone.contact_events(), shared.contact_events())) << tick;
+    EXPECT_GT(shared.statistics().contacts, 3u * 512u);
+  }
+}
+
+TEST(ChunksOfPairs, KeepTheirPlacesAtRestAndMakeRoomWhenTheyChange) {
+  expect_one_list<2>(box(0.25f, 0.25f), box(400.0f, 1.0f));
+}
+TEST(ChunksOfPairs, KeepTheirPlacesInSpaceToo) {
+  expect_one_list<3>(box_def({{0.25f, 0.25f, 0.25f}}), box_def({{400.0f, 1.0f, 2.0f}}));
 }
 
 // A floor along an axis has a box; what stands high above it makes no pair with it. A floor that is
