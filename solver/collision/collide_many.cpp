@@ -130,8 +130,10 @@ void Collider<3>::operator()(const PlacedPair<3>* pairs, int count, Manifold<3>*
     const PlacedPair<3>& pair = pairs[i];
     const Shape<3>& a = shapes[pair.shape_a];
     const Shape<3>& b = shapes[pair.shape_b];
-    manifolds[i] = is_held(a, b) ? memory.collide(pair)
-                                 : collide(a, pair.pose_a, b, pair.pose_b, pair.margin, polyhedra);
+    if (is_held(a, b))
+      memory.collide(pair, manifolds[i]);
+    else
+      manifolds[i] = collide(a, pair.pose_a, b, pair.pose_b, pair.margin, polyhedra);
   }
 }
 

@@ -48,8 +48,10 @@ Manifold<3> collide_held(const WorldState<3>& state, const PlacedPair<3>& pair) 
   const Pose<3> relative = relative_pose(grid, pair);
   const Pose<3> cell = rounded(grid, relative);
   const float margin = rounded_margin(pair.margin, state.header.tuning.speculative_distance);
-  return moved_from_cell(collide_rounded(state, pair, grid, cell, margin), grid, cell, relative,
-                         pair);
+  Manifold<3> manifold;
+  move_from_cell(collide_rounded(state, pair, grid, cell, margin), grid, cell, relative, pair,
+                 manifold);
+  return manifold;
 }
 
 template <class Held>
@@ -116,12 +118,13 @@ static bool are_same(const Pose<3>& one, const Pose<3>& other) {
   return std::memcmp(&one, &other, sizeof one) == 0;
 }
 
-Manifold<3> PairMemory<3>::collide(const PlacedPair<3>& pair) {
+void PairMemory<3>::collide(const PlacedPair<3>& pair, Manifold<3>& manifold) {
   const std::uint64_t key = ShapePair{pair.shape_a, pair.shape_b}.key();
   const CellGrid grid = grid_of_pair(state_, pair);
   const Pose<3> relative = relative_pose(grid, pair);
   const float margin = rounded_margin(pair.margin, state_.header.tuning.speculative_distance);
-  if (is_parted(key, relative, margin)) return {};
+  manifold.point_count = 0;
+  if (is_parted(key, relative, margin)) return;
   const HeldManifold* known = pass_to(key, manifolds_);
   // What had points will nearly always have some again.
   const bool had_points = known != nullptr && known->manifold.point_count > 0;
@@ -129,11 +132,11 @@ Manifold<3> PairMemory<3>::collide(const PlacedPair<3>& pair) {
   if (known != nullptr && known->margin == margin && are_same(known->cell, cell)) {
     now_.manifolds.push_back(*known);
   } else {
-    if (!had_points && find_parted(pair, key, grid, relative, margin)) return {};
+    if (!had_points && find_parted(pair, key, grid, relative, margin)) return;
     now_.manifolds.push_back(
         {key, cell, margin, collide_rounded(state_, pair, grid, cell, margin)});
   }
-  return moved_from_cell(now_.manifolds.back().manifold, grid, cell, relative, pair);
+  move_from_cell(now_.manifolds.back().manifold, grid, cell, relative, pair, manifold);
 }
 
 }  // namespace cycloid::solver

@@ -61,8 +61,8 @@ class PairMemory<3> {
   PairMemory(const WorldState<3>& state, const HeldPairs<3>& before, std::uint64_t key,
              HeldPairs<3>& now);
 
-  /// What `collide_held` gives; holds it for the next tick. @pre the key is above that before.
-  Manifold<3> collide(const PlacedPair<3>& pair);
+  /// What `collide_held` gives, and holds it for the next tick. @pre the key is above that before.
+  void collide(const PlacedPair<3>& pair, Manifold<3>& manifold);
 
  private:
   bool is_parted(std::uint64_t key, const Pose<3>& relative, float margin);

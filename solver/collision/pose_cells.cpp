@@ -92,12 +92,15 @@ static PointLanes points_of(const Manifold<3>& manifold) {
   transpose(quads);
   return {{{PerPoint(quads[0]), PerPoint(quads[1]), PerPoint(quads[2])}}, PerPoint(quads[3])};
 }
-static void set_points(const PointLanes& points, Manifold<3>& manifold) {
+static void set_points(const PointLanes& points, const Manifold<3>& from, Manifold<3>& to) {
   Quad quads[Dim<3>::kManifoldPoints] = {points.anchor_a[0].raw, points.anchor_a[1].raw,
                                          points.anchor_a[2].raw, points.separation.raw};
   transpose(quads);
-  for (std::uint32_t i = 0; i < manifold.point_count; ++i)
-    store_quad(quads[i], 0, manifold.points[i]);
+  to.point_count = from.point_count;
+  for (std::uint32_t i = 0; i < to.point_count; ++i) {
+    store_quad(quads[i], 0, to.points[i]);
+    to.points[i].feature = from.points[i].feature;
+  }
 }
 
 template <int N>
@@ -107,29 +110,32 @@ static Vec<N, PerPoint> in_all(const Vec<N>& v) {
   return lanes;
 }
 
-Manifold<3> moved_from_cell(Manifold<3> manifold, const CellGrid& grid, const Pose<3>& cell,
-                            const Pose<3>& relative, const PlacedPair<3>& pair) {
-  if (manifold.point_count == 0) return manifold;
+void move_from_cell(const Manifold<3>& manifold, const CellGrid& grid, const Pose<3>& cell,
+                    const Pose<3>& relative, const PlacedPair<3>& pair, Manifold<3>& moved) {
+  moved.point_count = 0;
+  if (manifold.point_count == 0) return;
   const Rotation<3>& to_world = grid.b_carries ? pair.pose_b.rotation : pair.pose_a.rotation;
   const Rotation<3> turn = compose(relative.rotation, conjugate(rotation_of(cell)));
   const bool turns = is_of_face(manifold) && is_of_face_of_b(manifold) != grid.b_carries;
   const Vec<3> normal = turns ? rotate(turn, manifold.normal) : manifold.normal;
   PointLanes points = points_of(manifold);
   const Vec<3, PerPoint> half = (PerPoint(0.5f) * points.separation) * in_all(manifold.normal);
-  // From the rounded body as it lay to what lies on it, and on the other.
-  const Vec<3> from = grid.b_carries ? Vec<3>::zero() : -cell.position;
-  const Vec<3, PerPoint> middle = points.anchor_a + in_all(from);
+  // What lies on the rounded body, and on the other, from the centre of the former: in the cell,
+  // ...
+  const Vec<3> a_then = grid.b_carries ? Vec<3>::zero() : -cell.position;
+  const Vec<3, PerPoint> middle = points.anchor_a + in_all(a_then);
   const Vec<3, PerPoint> on_rounded = grid.b_carries ? middle - half : middle + half;
   const Vec<3, PerPoint> on_other = grid.b_carries ? middle + half : middle - half;
-  const Vec<3, PerPoint> moved = rotate(in_all(turn), on_rounded);
-  const Vec<3, PerPoint> still = on_other + in_all(cell.position - relative.position);
-  const Vec<3, PerPoint> apart = grid.b_carries ? still - moved : moved - still;
-  points.separation = dot(in_all(normal), apart);
+  // ... and now.
   const Vec<3> a_now = grid.b_carries ? Vec<3>::zero() : -relative.position;
-  points.anchor_a = rotate(in_all(to_world), PerPoint(0.5f) * (moved + still) - in_all(a_now));
-  set_points(points, manifold);
-  manifold.normal = rotate(to_world, normal);
-  return manifold;
+  const Vec<3, PerPoint> rounded_now = rotate(in_all(turn), on_rounded);
+  const Vec<3, PerPoint> other_now = on_other + in_all(cell.position - relative.position);
+  const Vec<3, PerPoint> apart = grid.b_carries ? other_now - rounded_now : rounded_now - other_now;
+  points.separation = dot(in_all(normal), apart);
+  points.anchor_a =
+      rotate(in_all(to_world), PerPoint(0.5f) * (rounded_now + other_now) - in_all(a_now));
+  set_points(points, manifold, moved);
+  moved.normal = rotate(to_world, normal);
 }
 
 }  // namespace cycloid::solver

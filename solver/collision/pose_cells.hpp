@@ -42,9 +42,10 @@ float rounded_margin(float margin, float speculative);
 Manifold<3> collide_in_cell(const Shape<3>& a, const Shape<3>& b, const Polyhedra& polyhedra,
                             const CellGrid& grid, const Pose<3>& cell, float margin);
 
-/// What becomes of it at the pose itself, in world axes from body a. Points move with the bodies
-/// that they lie on, the normal with that whose face it is of; their distance along it changes.
-Manifold<3> moved_from_cell(Manifold<3> manifold, const CellGrid& grid, const Pose<3>& cell,
-                            const Pose<3>& relative, const PlacedPair<3>& pair);
+/// What becomes of it at the pose itself, in world axes from body a, into `moved`. Points move with
+/// the bodies that they lie on, the normal with that whose face it is of; their distance along it
+/// changes.
+void move_from_cell(const Manifold<3>& manifold, const CellGrid& grid, const Pose<3>& cell,
+                    const Pose<3>& relative, const PlacedPair<3>& pair, Manifold<3>& moved);
 
 }  // namespace cycloid::solver

@@ -61,7 +61,7 @@ static void take_points(const Manifold<D>& manifold, float slop, const Contact<D
 }
 
 /// The old contacts from `old` on whose key is below `key`: their pairs have no points, or were not
-/// found. Inlined, as add_live is.
+/// found. Inlined, as set_live is.
 template <int D>
 [[gnu::always_inline]] static inline void pass_old(const OldContacts<D>& contacts,
                                                    std::uint64_t key, std::uint32_t& old,

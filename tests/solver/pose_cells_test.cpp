@@ -87,8 +87,9 @@ TEST(PoseCells, ManifoldsAreMovedToWhereTheBodiesAre) {
     const CellGrid grid = i % 4 < 2 ? grid_of(0.9f, 0.8f) : grid_of(0.8f, 0.9f);
     const Pose<3> relative = relative_pose(grid, pair);
     const Pose<3> cell = rounded(grid, relative);
-    const Manifold<3> found = moved_from_cell(
-        collide_in_cell(a, b, stone.pool, grid, cell, pair.margin), grid, cell, relative, pair);
+    Manifold<3> found;
+    move_from_cell(collide_in_cell(a, b, stone.pool, grid, cell, pair.margin), grid, cell, relative,
+                   pair, found);
     const Manifold<3> exact = collide(a, pair.pose_a, b, pair.pose_b, pair.margin, stone.pool);
     if (found.point_count == 0 || found.point_count != exact.point_count) continue;
     bool same_features = true;
