@@ -148,9 +148,9 @@ struct StepScratch : ContactList<D> {
   std::vector<ShapePair> pairs;             ///< Sorted by key.
   std::vector<ContactList<D>> contact_chunks;
   bool contacts_are_all = true;               ///< With those that rest.
-  std::vector<Contact<D>> merged_contacts;    ///< For take_in_resting to work in.
+  std::vector<Contact<D>> merged_contacts;    ///< For take_in_resting and chunks to work in.
   std::vector<std::uint32_t> contact_places;  ///< By what take_in_resting was given: its new one.
-  std::vector<LiveContact<D>> live_before;    ///< Before any woke.
+  std::vector<LiveContact<D>> live_before;    ///< Before any woke; and for chunks.
 
   std::uint32_t bodies_asleep = 0;  ///< Those that took no part as the tick began, and have mass;
                                     ///< later, that do not.

@@ -79,10 +79,7 @@ static OwnSolid own_solid(const Shape<3>& shape, const Rotation<3>& rotation,
 }
 
 bool may_be_parted(const Shape<3>& a, const Shape<3>& b) {
-  const bool hull_a = a.kind == ShapeKind::kHull;
-  const bool hull_b = b.kind == ShapeKind::kHull;
-  return (hull_a || a.kind == ShapeKind::kBox) && (hull_b || b.kind == ShapeKind::kBox) &&
-         (hull_a || hull_b);
+  return a.kind == ShapeKind::kHull || b.kind == ShapeKind::kHull;
 }
 
 FaceGap gap_beside_a_face(const Shape<3>& a, const Shape<3>& b, const PlacedPair<3>& pair,

@@ -5,8 +5,8 @@
 
 namespace cycloid::solver {
 
-/// Whether the two are solids that `gap_beside_a_face` is worth asking about: boxes and hulls, but
-/// not two boxes, whose axes are known beforehand.
+/// Whether `gap_beside_a_face` is worth asking about: not of two boxes, whose axes are known
+/// beforehand. @pre both are boxes or hulls.
 bool may_be_parted(const Shape<3>& a, const Shape<3>& b);
 
 /// How far a face of one of two solids parts them at least.
@@ -21,7 +21,7 @@ struct FaceGap {
 /// nearly all of them.
 ///
 /// @param b_first  Whether b's is asked first; the first that parts them by more is told.
-/// @pre may_be_parted.
+/// @pre both are boxes or hulls.
 FaceGap gap_beside_a_face(const Shape<3>& a, const Shape<3>& b, const PlacedPair<3>& pair,
                           bool b_first, const Polyhedra& polyhedra, float margin);
 

@@ -3,7 +3,7 @@
 #include "solver/collision/collide.hpp"
 #include "solver/lane_widths.hpp"
 #include "solver/stages/active_contacts.hpp"
-#include "solver/stages/add_live.hpp"
+#include "solver/stages/set_live.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -233,11 +233,11 @@ static void collide_chunks(const Collider<D>& collider, const StepContext<D>& co
 /// The contact points of every pair, with last tick's impulses where the same features met, and
 /// which contacts began and ended.
 ///
-/// Reads pairs, shapes, materials, poses, velocities, who is active and the old contacts; writes
-/// which of those rest, the contacts of all others, which of them are live with their manifolds,
-/// began and ended. Contacts are listed in the order of the pairs, which is that of the shapes'
-/// slots, beside the old ones in the same order. One thread lists them at once; of several each
-/// takes chunks of the pairs, whose lists are joined.
+/// Reads pairs, shapes, materials, poses, velocities, who is active, the old contacts and the held
+/// pairs; writes which contacts rest, all others, which of them are live with their manifolds,
+/// began and ended, and the held pairs of the next tick. Contacts are listed in the order of the
+/// pairs, which is that of the shapes' slots, beside the old ones in the same order. One thread
+/// lists them at once; of several each takes chunks of the pairs, whose lists are joined.
 template <int D>
 void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch) {

@@ -285,7 +285,8 @@ static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
 /// widened by the speculative distance and a tick's flight.
 ///
 /// Reads shapes, joints, and the bodies that were awake in the tick before or were touched since;
-/// writes the tree of static shapes, the pair cache, who is active and who has mass, and pairs.
+/// writes the tree of static shapes, the pair cache, who is active and who has mass, and pairs;
+/// empties the held pairs where a shape came, went or was changed.
 /// Pairs are those of the boxes of this tick in the order of shape slots, so neither threads nor
 /// what the cache holds show in the result.
 /// @returns false, and no pairs, where there are far more than `limits.contacts`.

@@ -2,7 +2,7 @@
 
 #include "solver/collision/collide.hpp"
 #include "solver/stages/active_contacts.hpp"
-#include "solver/stages/add_live.hpp"
+#include "solver/stages/set_live.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trace.hpp"
 #include "solver/union_find.hpp"

@@ -139,7 +139,7 @@ TEST(HeldPairs, AreAskedForFromAnyKeyOn) {
   }
 }
 
-/// Stones that fall into a box and lie there.
+/// Stones that fall onto a broad box and lie there.
 static World<3> pile() {
   World<3> world = make_world(with_gravity<3>());
   std::mt19937 random(3);
