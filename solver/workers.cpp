@@ -30,11 +30,11 @@ namespace cycloid::solver {
 
 /// How often a thread looks for what it waits for before it sleeps, a few hundred microseconds in
 /// all: to wake a sleeping thread takes longer than most of the hundred jobs of a step, and what
-/// one thread does alone between them takes up to that long. After the first looks, which take a
-/// microsecond or two, it yields in between, so where there are more workers than processors the
+/// one thread does alone between them takes up to that long. After the first looks, which take five
+/// microseconds or so, it yields in between, so where there are more workers than processors the
 /// others go on meanwhile.
-static constexpr int kLooks = 2000;
-static constexpr int kEagerLooks = 1000;
+static constexpr int kLooks = 5000;
+static constexpr int kEagerLooks = 4000;
 
 /// A number to wait for. Not std::atomic's own `wait`: where the system has no futex, such as on
 /// Windows, GCC 12's library looks at the number before it takes the lock that it sleeps by, and a
@@ -63,9 +63,9 @@ struct Awaited {
   }
 
  private:
+  std::atomic<int> sleepers{0};
   std::mutex mutex;
   std::condition_variable changed;
-  std::atomic<int> sleepers{0};
 };
 
 /// The chunks of a job that one thread begins with, and others take from once their own are done.
@@ -73,9 +73,17 @@ struct Awaited {
 struct alignas(64) Share {
   std::atomic<int> next{0};
   int end = 0;
+
+  /// Where the next chunk begins; from `end` on there is none. Looks before it takes, for most
+  /// shares of others are empty, and to write to them would hold their owners up.
+  int take(int grain) {
+    const int begin = next.load(std::memory_order_relaxed);
+    return begin < end ? next.fetch_add(grain, std::memory_order_relaxed) : begin;
+  }
 };
 
-/// The threads beside the calling one, and the job that all of them share.
+/// The threads beside the calling one, and the job that all of them share. A job comes in one line
+/// of the cache with the number that tells of it, and its end is told in another.
 struct Workers::Threads {
   explicit Threads(int count);
   ~Threads();
@@ -83,15 +91,15 @@ struct Workers::Threads {
   void run_chunks(std::size_t own);
   void thread_main(std::size_t own);
 
-  std::vector<std::thread> threads;
-  std::vector<Share> shares;  ///< By thread; the calling one's is the last.
-  Awaited<std::uint32_t> generation;
-  Awaited<int> busy;
-  std::atomic<bool> stop{false};
-  int size = 0;
+  alignas(64) int size = 0;
   int grain = 1;
   void* context = nullptr;
   Call call = nullptr;
+  Awaited<std::uint32_t> generation;
+  alignas(64) Awaited<int> busy;
+  std::atomic<bool> stop{false};
+  std::vector<std::thread> threads;
+  std::vector<Share> shares;  ///< By thread; the calling one's is the last.
 };
 
 Workers::Workers(int count) : count_(count) {
@@ -119,8 +127,8 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
   pool.context = context;
   pool.call = call;
   pool.share_out();
-  pool.busy.value.store(static_cast<int>(pool.threads.size()));
-  pool.generation.value.fetch_add(1);
+  pool.busy.value.store(static_cast<int>(pool.threads.size()), std::memory_order_relaxed);
+  pool.generation.value.fetch_add(1);  // Whoever sees it sees all that was written before.
   pool.generation.tell();
   pool.run_chunks(pool.threads.size());
   // The job's fields may only be written again when every thread has left it.
@@ -134,7 +142,7 @@ void Workers::Threads::share_out() {
     return static_cast<int>(chunks * share / shares.size()) * grain;
   };
   for (std::size_t i = 0; i < shares.size(); ++i) {
-    shares[i].next.store(begin_of(i));
+    shares[i].next.store(begin_of(i), std::memory_order_relaxed);
     shares[i].end = begin_of(i + 1);
   }
 }
@@ -142,8 +150,7 @@ void Workers::Threads::share_out() {
 void Workers::Threads::run_chunks(std::size_t own) {
   for (std::size_t i = 0; i < shares.size(); ++i) {
     Share& share = shares[(own + i) % shares.size()];
-    for (int begin = share.next.fetch_add(grain); begin < share.end;
-         begin = share.next.fetch_add(grain))
+    for (int begin = share.take(grain); begin < share.end; begin = share.take(grain))
       call(context, Range{begin, begin + grain < size ? begin + grain : size});
   }
 }
