@@ -4,6 +4,7 @@
 #include <array>
 
 #include "solver/lane_widths.hpp"
+#include "solver/radix_sort.hpp"
 
 namespace cycloid::solver {
 
@@ -37,6 +38,24 @@ static std::uint32_t morton_code(const Bounds<D>& box, const Bounds<D>& world) {
   return code;
 }
 
+/// By Morton code, and by id where two codes are the same: a crowd in one cell.
+template <int D>
+void BoundsTree<D>::sort_keys() {
+  // Total order: ids are unique.
+  const auto is_before = [](const Key& a, const Key& b) { return a.code < b.code; };
+  if (keys_.size() < kRadixSortMin) return std::sort(keys_.begin(), keys_.end(), is_before);
+  const auto place_of = [](const Key& key) { return static_cast<std::uint32_t>(key.code >> 32); };
+  keys_room_.resize(keys_.size());
+  radix_sort(~std::uint32_t{0}, place_of, keys_room_, keys_);
+  for (auto first = keys_.begin(); first != keys_.end();) {
+    auto last = first + 1;
+    while (last != keys_.end() && place_of(*last) == place_of(*first)) ++last;
+    // Total order: the same.
+    if (last - first > 1) std::sort(first, last, is_before);
+    first = last;
+  }
+}
+
 template <int D>
 void BoundsTree<D>::build(std::vector<Leaf>& leaves) {
   keys_.clear();
@@ -48,8 +67,7 @@ void BoundsTree<D>::build(std::vector<Leaf>& leaves) {
     const std::uint64_t code = morton_code(leaves[i].bounds, world);
     keys_.push_back({(code << 32) | leaves[i].id, i});
   }
-  // Total order: ids are unique.
-  std::sort(keys_.begin(), keys_.end(), [](const Key& a, const Key& b) { return a.code < b.code; });
+  sort_keys();
   for (const Key& key : keys_) leaves_.push_back(leaves[key.leaf]);
   build_rows();
 }

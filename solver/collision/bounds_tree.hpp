@@ -40,6 +40,7 @@ class BoundsTree {
 
  private:
   bool search_on(BoundsSearch<D>& search, FoundBoxes& found) const;
+  void sort_keys();
   void put(int level, int child, const Bounds<D>& box);
   void build_rows();
 
@@ -52,6 +53,7 @@ class BoundsTree {
     std::uint32_t leaf;
   };
   std::vector<Key> keys_;
+  std::vector<Key> keys_room_;  ///< For sort_keys to work in.
 };
 
 }  // namespace cycloid::solver

@@ -121,4 +121,24 @@ TEST(BoundsTree, OfManyFindsWhatComparingFinds) {
   }
 }
 
+// Many lie in few places, and so have one code: their ids alone put them in order.
+TEST(BoundsTree, IsTheSameInWhateverOrderItsLeavesCome) {
+  std::mt19937 random(8);
+  Bounds<2> places[5];
+  for (Bounds<2>& place : places) place = drawn_box<2>(random, 0.2f);
+  std::vector<BoundsTree<2>::Leaf> leaves;
+  for (std::uint32_t i = 0; i < 900; ++i) {
+    const bool in_crowd = i % 3 != 0;
+    leaves.push_back({in_crowd ? places[random() % 5] : drawn_box<2>(random, 0.2f), i});
+  }
+  BoundsTree<2> ordered;
+  ordered.build(leaves);
+  BoundsTree<2> shuffled;
+  for (std::size_t i = leaves.size(); i > 1; --i) std::swap(leaves[i - 1], leaves[random() % i]);
+  shuffled.build(leaves);
+  ASSERT_EQ(ordered.size(), shuffled.size());
+  for (int rank = 0; rank < ordered.size(); ++rank)
+    ASSERT_EQ(ordered.leaf(rank).id, shuffled.leaf(rank).id) << rank;
+}
+
 }  // namespace cycloid::solver
