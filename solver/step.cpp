@@ -90,7 +90,7 @@ static void solve_lot(float tick_h, const StepContext<D>& context, const WorldSt
                       const Tracer<D>& traced, Lot& lot, Workers& workers,
                       StepScratch<D>& scratch) {
   solve_substeps<D, W>(context, state, traced, lot, workers, scratch);
-  store_pins(scratch);
+  store_pins(workers, scratch);
   if (context.h != tick_h) rescale_impulses<D, W>(tick_h / context.h, scratch);
   store_impulses<D, W>(lot, workers, scratch);
 }
@@ -125,10 +125,10 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   Lot whole = lay_out_contacts<D, W>(workers, scratch);
   const bool divided = !scratch.lots.all.empty();
   if (!divided) prepare_contacts<D, W>(context, state, whole, workers, scratch);
-  prepare_islands<D, W>(context, scratch);
+  prepare_islands<D, W>(context, workers, scratch);
   const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
   scratch.substeps = paced.tuning.substeps;
-  prepare_pins(paced, state, scratch);
+  prepare_pins(paced, state, workers, scratch);
   traced(Phase::kPrepare);
   if (divided)
     solve_lots<D, W>(paced, state, traced, workers, scratch);
@@ -167,7 +167,7 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   divide_into_lots(context, state, scratch);
   traced(Phase::kColors);
   prepare_bodies(context, state, workers, scratch);
-  prepare_joints(context, state, scratch);
+  prepare_joints(context, state, workers, scratch);
   solve_in_lanes(context, state, workers, scratch);
 }
 
@@ -267,7 +267,7 @@ Error World<D>::step_in_lanes() {
     return {Code::kFaulted, "particle"};
   }
   if (!state_.particles.empty()) traced(Phase::kParticles);
-  statistics_ = count_work(state_, scratch);
+  statistics_ = count_work(state_, *workers_, scratch);
   return {};
 }
 

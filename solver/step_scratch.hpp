@@ -132,6 +132,14 @@ struct ContactList {
   ContactRoom<D> room;               ///< Of a chunk: the first contacts are there, and in no list.
 };
 
+/// Candidates whose keys lie in one range, for merge_candidates to work in.
+struct CandidateRange {
+  std::vector<ShapePair> kept;   ///< Old ones, sorted.
+  std::vector<ShapePair> fresh;  ///< New ones, sorted.
+  std::vector<ShapePair> room;   ///< For sort_pairs.
+  std::size_t begin = 0;         ///< Where they begin in the list of all.
+};
+
 /// Everything a step computes and throws away: nothing in here that shows outlives a tick, so
 /// nothing in here is state. Lent for a step (step_memory.hpp): what is left in it may be another
 /// world's.
@@ -143,9 +151,9 @@ struct StepScratch : ContactList<D> {
   std::vector<std::uint32_t> leaving;  ///< Shapes that left their fat boxes.
   std::vector<std::vector<std::uint32_t>> leaving_chunks;
   std::vector<std::vector<ShapePair>> pair_chunks;
-  std::vector<ShapePair> fresh_candidates;  ///< Of those that look, sorted by key.
-  std::vector<ShapePair> sorted_pairs;      ///< For sort_pairs to work in.
-  std::vector<ShapePair> pairs;             ///< Sorted by key.
+  std::vector<ShapePair> fresh_candidates;  ///< Of those that look.
+  std::vector<CandidateRange> candidate_ranges;
+  std::vector<ShapePair> pairs;  ///< Sorted by key.
   std::vector<ContactList<D>> contact_chunks;
   bool contacts_are_all = true;               ///< With those that rest.
   std::vector<Contact<D>> merged_contacts;    ///< For take_in_resting and chunks to work in.

@@ -154,10 +154,11 @@ template <int D>
 struct Pins {
   static constexpr std::int8_t kNone = -1;
 
-  int lanes = 0;                     ///< The width that is used; 0 where there are no pins.
-  std::vector<std::int8_t> form_of;  ///< By place of the joint rows: PinForm::number, or kNone.
-  std::vector<PinCounts> counts;     ///< By colour.
-  std::vector<int> lane_of;          ///< By place: the lane of all blocks in a row, or kNone.
+  int lanes = 0;                        ///< The width that is used; 0 where there are no pins.
+  std::vector<std::int8_t> form_of;     ///< By place of the joint rows: PinForm::number, or kNone.
+  std::vector<PinCounts> counts;        ///< By colour.
+  std::vector<int> lane_of;             ///< By place: the lane of all blocks in a row, or kNone.
+  std::vector<std::uint32_t> place_of;  ///< By that lane; the solver's kNone where it is empty.
   std::tuple<PinBlocks<D, 1>, PinBlocks<D, 4>, PinBlocks<D, 8>, PinBlocks<D, 16>,
              PinBlocks<D, kAvx2Lanes>, PinBlocks<D, kAvx512Lanes>>
       blocks;  ///< Only that of the width is filled.

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "solver/stages/stages.hpp"
+
 namespace cycloid::solver {
 
 template <int D>
@@ -105,10 +107,9 @@ static bool are_the_same(const WorldState<D>& state, const StepScratch<D>& scrat
 template <int D>
 static void take_all(const std::vector<Contact<D>>& from, Workers& workers,
                      std::vector<Contact<D>>& to) {
-  constexpr int kContactGrain = 1024;
   if (from.size() > to.capacity()) to.reserve(std::max(from.size(), 2 * to.capacity()));
   to.resize(from.size());
-  workers.parallel_for(static_cast<int>(from.size()), kContactGrain, [&](Range range) {
+  workers.parallel_for(static_cast<int>(from.size()), kLookGrain, [&](Range range) {
     std::copy(from.begin() + range.begin, from.begin() + range.end, to.begin() + range.begin);
   });
 }

@@ -92,6 +92,21 @@ static void take_motion(const Motion<D>& motion, Body<D>& body) {
   body.rotation = normalized_or(compose(motion.delta_rotation, body.rotation), body.rotation);
 }
 
+template <int D>
+static void keep_impulses(const JointRow<D>& row, WorldState<D>& state) {
+  Joint<D>& joint = state.joints[row.joint];
+  for (int i = 0; i < Dim<D>::kFreedoms; ++i)
+    joint.impulse[static_cast<std::size_t>(i)] = row.impulse[i];
+  joint.spring_impulse = row.spring_impulse;
+  joint.motor_impulse = row.motor_impulse;
+  joint.lower_impulse = row.lower_impulse;
+  joint.upper_impulse = row.upper_impulse;
+  store_cone_impulse(row, joint);
+  if (joint.kind != JointKind::kGear) return;
+  joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
+                     unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};
+}
+
 /// x' = x + dx, q' = dq q at unit length; the contacts and impulses of this tick become the
 /// state's; forces are spent.
 ///
@@ -107,19 +122,10 @@ void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
       take_motion(scratch.motions[slot], state.bodies[slot]);
     }
   });
-  for (const JointRow<D>& row : scratch.joint_rows) {
-    Joint<D>& joint = state.joints[row.joint];
-    for (int i = 0; i < Dim<D>::kFreedoms; ++i)
-      joint.impulse[static_cast<std::size_t>(i)] = row.impulse[i];
-    joint.spring_impulse = row.spring_impulse;
-    joint.motor_impulse = row.motor_impulse;
-    joint.lower_impulse = row.lower_impulse;
-    joint.upper_impulse = row.upper_impulse;
-    store_cone_impulse(row, joint);
-    if (joint.kind != JointKind::kGear) continue;
-    joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
-                       unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};
-  }
+  workers.parallel_for(static_cast<int>(scratch.joint_rows.size()), kJointGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i)
+      keep_impulses(scratch.joint_rows[static_cast<std::size_t>(i)], state);
+  });
   take_contacts(workers, scratch, state);
   ++state.header.tick;
 }

@@ -1,3 +1,4 @@
+#include "solver/stages/in_chunks.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -49,12 +50,11 @@ LoadBounds load_bounds(const StepContext<D>& context) {
 template <int D, int W>
 void join_loaded_lots(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
-  constexpr int kGrain = 1024;
   const LoadBounds bounds = load_bounds(context);
   if (scratch.lots.all.empty() || !bounds.asked) return;
   const ContactInputs<D> inputs = contact_inputs(context, state, scratch);
   Tally loaded;
-  workers.parallel_for(static_cast<int>(scratch.live.size()), kGrain, [&](Range range) {
+  workers.parallel_for(static_cast<int>(scratch.live.size()), kLookGrain, [&](Range range) {
     if (!loaded.is_over() &&
         ContactKernels<D, W>::any_loaded(bounds, inputs, range.begin, range.end))
       loaded.add(1);
@@ -68,23 +68,30 @@ void join_loaded_lots(const StepContext<D>& context, const WorldState<D>& state,
 /// at: join_loaded_lots.
 ///
 /// Reads masses, the loaded lanes of blocks and the impulses of joint rows; writes the loaded
-/// slots, one of each such pair, and whether islands are solved at all in this tick. Serial; which
-/// slots there are does not depend on the order.
+/// slots, one of each such pair, and whether islands are solved at all in this tick. Which slots
+/// there are does not depend on the order.
 template <int D, int W>
-void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch) {
+void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   solver.loaded.clear();
   solver.acts = context.tuning.contact_block == ContactBlockRows::kIsland;
   if (solver.acts || !solves_islands(context.tuning) || !scratch.lots.all.empty()) return;
-  const auto add = [&](std::uint32_t a, std::uint32_t b) {
-    solver.loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
+  const auto add = [&](std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& loaded) {
+    loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
   };
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   for (const ContactBlock<D, W>& block : blocks)
     for (int lane = 0; lane < kLaneCount<W> && block.loaded >> lane != 0; ++lane)
-      if ((block.loaded >> lane & 1) != 0) add(block.body_a[lane], block.body_b[lane]);
-  for (const JointRow<D>& row : scratch.joint_rows)
-    if (is_loaded(context, row)) add(row.body_a, row.body_b);
+      if ((block.loaded >> lane & 1) != 0)
+        add(block.body_a[lane], block.body_b[lane], solver.loaded);
+  const auto list_joints = [&](Range range, std::vector<std::uint32_t>& loaded) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];
+      if (is_loaded(context, row)) add(row.body_a, row.body_b, loaded);
+    }
+  };
+  list_in_chunks(workers, static_cast<int>(scratch.joint_rows.size()), kLookGrain,
+                 scratch.leaving_chunks, solver.loaded, list_joints);
   solver.acts = !solver.loaded.empty();
 }
 

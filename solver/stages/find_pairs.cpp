@@ -1,7 +1,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "solver/collision/sort_pairs.hpp"
 #include "solver/stages/in_chunks.hpp"
 #include "solver/stages/may_touch.hpp"
 #include "solver/stages/stages.hpp"
@@ -164,7 +163,7 @@ static std::uint32_t look(const WorldState<D>& state, const StepScratch<D>& scra
   return seen;
 }
 
-/// The candidates of all that look, sorted. False where there are more than `tally` takes.
+/// The candidates of all that look. False where there are more than `tally` takes.
 template <int D>
 static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tally,
                     StepScratch<D>& scratch) {
@@ -187,8 +186,6 @@ static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tal
                  look_all);
   if (tally.is_over()) return false;
   for (const std::uint32_t shape : scratch.looking) cache.seen_sum += cache.seen[shape];
-  sort_pairs(static_cast<std::uint32_t>(state.shapes.size()), scratch.sorted_pairs,
-             scratch.fresh_candidates);
   return true;
 }
 
@@ -218,57 +215,9 @@ static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScra
   return look_up(state, workers, tally, scratch);
 }
 
-static bool is_below(const ShapePair& one, const ShapePair& other) {
-  return one.key() < other.key();
-}
-
-/// Old candidates and new ones in one order, without the old ones of shapes that looked anew.
-template <int D>
-static void merge_candidates(StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.kept->pair_cache;
-  const std::vector<ShapePair>& fresh = scratch.fresh_candidates;
-  std::vector<ShapePair>& kept = scratch.pairs;
-  kept.clear();
-  append_if(cache.candidates, {0, static_cast<int>(cache.candidates.size())}, kept,
-            [&](const ShapePair& pair) {
-              return (cache.looks[pair.shape_a] | cache.looks[pair.shape_b]) == 0;
-            });
-  cache.candidates.resize(kept.size() + fresh.size());
-  std::merge(kept.begin(), kept.end(), fresh.begin(), fresh.end(), cache.candidates.begin(),
-             is_below);
-  for (const std::uint32_t shape : scratch.looking) cache.looks[shape] = 0;
-  scratch.looking.clear();
-}
-
-/// All candidates become one list again, where dormant ones may be so no longer.
-template <int D>
-static void wake_candidates(StepScratch<D>& scratch) {
-  PairCache<D>& cache = scratch.kept->pair_cache;
-  if (cache.dormant.empty()) return;
-  scratch.sorted_pairs.resize(cache.candidates.size() + cache.dormant.size());
-  std::merge(cache.candidates.begin(), cache.candidates.end(), cache.dormant.begin(),
-             cache.dormant.end(), scratch.sorted_pairs.begin(), is_below);
-  cache.candidates.assign(scratch.sorted_pairs.begin(), scratch.sorted_pairs.end());
-  cache.dormant.clear();
-}
-
-/// Puts those aside of which neither shape takes part. @pre none is put aside.
-template <int D>
-static void lay_candidates_to_rest(PairCache<D>& cache) {
-  std::size_t kept = 0;
-  for (const ShapePair& pair : cache.candidates) {
-    if ((cache.active[pair.shape_a] | cache.active[pair.shape_b]) != 0)
-      cache.candidates[kept++] = pair;
-    else
-      cache.dormant.push_back(pair);
-  }
-  cache.candidates.resize(kept);
-}
-
 /// The candidates whose boxes overlap now and of which one takes part.
 template <int D>
 static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
-  constexpr int kCandidateGrain = 1024;
   const PairCache<D>& cache = scratch.kept->pair_cache;
   scratch.pairs.clear();
   const auto meets = [&](const ShapePair& pair) {
@@ -277,7 +226,7 @@ static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
   const auto list = [&](Range range, std::vector<ShapePair>& pairs) {
     append_if(cache.candidates, range, pairs, meets);
   };
-  list_in_chunks(workers, static_cast<int>(cache.candidates.size()), kCandidateGrain,
+  list_in_chunks(workers, static_cast<int>(cache.candidates.size()), kLookGrain,
                  scratch.pair_chunks, scratch.pairs, list);
 }
 
@@ -312,7 +261,7 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
     PairTally tally(seen_max, seen_max);
     if (!look_up(state, workers, tally, scratch) && !look_up_crowd(state, workers, scratch))
       return false;
-    merge_candidates(scratch);
+    merge_candidates(static_cast<std::uint32_t>(state.shapes.size()), workers, scratch);
   }
   if (sorts_anew) lay_candidates_to_rest(cache);
   list_pairs(workers, scratch);

@@ -234,10 +234,10 @@ static void begin_grouping(const Tuning& tuning, IslandSolver<D>& solver) {
 /// Reads contact blocks, joint rows, masses and which bodies are loaded; writes the island solver.
 /// Serial, in the order of the colouring and of the slots.
 template <int D, int W>
-void group_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
+void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   begin_grouping(context.tuning, solver);
-  if (!list_held<D, W>(scratch)) {
+  if (!list_held<D, W>(workers, scratch)) {
     find_islands(scratch);
     count_pairs(solver);
     solver.is_sorted = false;

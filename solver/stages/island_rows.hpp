@@ -26,7 +26,7 @@ Vec<D, Wide> speed_at(const Motion<D>& motion, const Vec<D, Wide>& arm) {
 /// the lanes, then every joint that does not yield. @returns whether it is what held before, in a
 /// world of as many slots, so that all that was made of it still stands.
 template <int D, int W>
-bool list_held(StepScratch<D>& scratch);
+bool list_held(Workers& workers, StepScratch<D>& scratch);
 
 /// Lists the groups of rows of what is solvable, island after island, and of what is only weighed
 /// just the joints. @pre islands are planned.

@@ -71,19 +71,21 @@ static void list_fast(const StepContext<D>& context, const WorldState<D>& state,
 /// Of the speed of what is pushed, how much at the least its contact shares.
 static constexpr float kPushShare = 0.25f;
 
-/// Marks the fast bodies that another one pushes along: through a contact that carries an impulse
-/// and itself moves on, along its normal, at a good part of the body's speed; and farther than
-/// contacts are made, so that to lose that way matters. Cards, of which the slowest is fast, would
-/// otherwise pass through one another.
+/// Lists which fast bodies are pushed along in these places of the live contacts: through a contact
+/// that carries an impulse and itself moves on, along its normal, at a good part of the body's
+/// speed; and farther than contacts are made, so that to lose that way matters. Cards, of which the
+/// slowest is fast, would otherwise pass through one another.
 template <int D>
-static void mark_pushed(const StepContext<D>& context, StepScratch<D>& scratch) {
+static void list_pushed(const StepContext<D>& context, const StepScratch<D>& scratch, Range places,
+                        std::vector<std::uint32_t>& pushed) {
   const float near = context.tuning.speculative_distance;
-  const auto mark = [&](std::uint32_t shape, float along, const Vec<D>& velocity) {
+  const auto list = [&](std::uint32_t shape, float along, const Vec<D>& velocity) {
     if (scratch.fast_of_shape[shape] == 0) return;
     if (context.tick_s * along > near && along > kPushShare * length(velocity))
-      scratch.fast_bodies[scratch.fast_of_shape[shape] - 1].is_pushed = true;
+      pushed.push_back(scratch.fast_of_shape[shape] - 1);
   };
-  for (const LiveContact<D>& live : scratch.live) {
+  for (int place = places.begin; place < places.end; ++place) {
+    const LiveContact<D>& live = scratch.live[static_cast<std::size_t>(place)];
     const Contact<D>& contact = scratch.contacts[live.contact];
     const std::uint32_t a = contact.shape_a;
     const std::uint32_t b = contact.shape_b;
@@ -102,9 +104,21 @@ static void mark_pushed(const StepContext<D>& context, StepScratch<D>& scratch) 
         velocity_of(live.body_b, anchor_b_of(manifold.points[0], live.between));
     const float along_a = dot(manifold.normal, velocity_a);
     const float along_b = dot(manifold.normal, velocity_b);
-    mark(b, min(along_a, along_b), velocity_b);
-    mark(a, min(-along_a, -along_b), velocity_a);
+    list(b, min(along_a, along_b), velocity_b);
+    list(a, min(-along_a, -along_b), velocity_a);
   }
+}
+
+/// Marks the fast bodies that another one pushes along.
+template <int D>
+static void mark_pushed(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
+  std::vector<std::uint32_t>& pushed = scratch.looking;
+  pushed.clear();
+  list_in_chunks(workers, static_cast<int>(scratch.live.size()), kLookGrain, scratch.leaving_chunks,
+                 pushed, [&](Range places, std::vector<std::uint32_t>& list) {
+                   list_pushed(context, scratch, places, list);
+                 });
+  for (const std::uint32_t place : pushed) scratch.fast_bodies[place].is_pushed = true;
 }
 
 template <int D>
@@ -128,7 +142,7 @@ void list_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
   list_fast(context, state, workers, scratch);
   if (scratch.fast_bodies.empty()) return;
   list_shapes_of_fast(state, scratch);
-  mark_pushed(context, scratch);
+  mark_pushed(context, workers, scratch);
 }
 
 template void list_fast_bodies(const StepContext<2>&, const WorldState<2>&, Workers&,

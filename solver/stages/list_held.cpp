@@ -2,6 +2,7 @@
 #include <type_traits>
 
 #include "solver/stages/island_rows.hpp"
+#include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
 
@@ -23,62 +24,72 @@ struct HeldJoint {
   std::uint32_t moves;
 };
 
-/// Numbers taken down one after the other, and whether they are those that stood there before.
-class Ledger {
- public:
-  Ledger(std::vector<std::uint32_t>& words, std::size_t count) : words_(words) {
-    same_ = words_.size() == count;
-    words_.resize(count);
-  }
+/// Takes a record down. @returns whether it is the one that stood there before.
+template <class T>
+static bool put(const T& record, std::uint32_t* at) {
+  static_assert(std::has_unique_object_representations_v<T> && sizeof(T) % 4 == 0);
+  if (std::memcmp(at, &record, sizeof record) == 0) return true;
+  std::memcpy(at, &record, sizeof record);
+  return false;
+}
 
-  template <class T>
-  void put(const T& record) {
-    static_assert(std::has_unique_object_representations_v<T> && sizeof(T) % 4 == 0);
-    std::uint32_t* at = words_.data() + next_;
-    next_ += sizeof(T) / 4;
-    if (same_ && std::memcmp(at, &record, sizeof record) == 0) return;
-    same_ = false;
-    std::memcpy(at, &record, sizeof record);
-  }
-
-  bool is_same() const { return same_; }
-
- private:
-  std::vector<std::uint32_t>& words_;
-  std::size_t next_ = 0;
-  bool same_;
-};
+template <int D, int W>
+static HeldBlock<D, W> held_by(const ContactBlock<D, W>& block) {
+  HeldBlock<D, W> held;
+  std::memcpy(held.body_a, block.body_a, sizeof held.body_a);
+  std::memcpy(held.body_b, block.body_b, sizeof held.body_b);
+  held.moves_a = block.moves_a;
+  held.moves_b = block.moves_b;
+  std::memcpy(held.has_point, block.has_point, sizeof held.has_point);
+  return held;
+}
 
 template <int D>
 static bool moves(const StepScratch<D>& scratch, std::uint32_t slot) {
   return scratch.masses[slot].inverse_mass > 0.0f;
 }
 
-/// @returns whether all that pairs are made of is as it was.
+template <int D>
+static HeldJoint held_by(const StepScratch<D>& scratch, const JointRow<D>& row) {
+  const std::uint32_t a_moves = moves(scratch, row.body_a) ? 1 : 0;
+  const std::uint32_t b_moves = moves(scratch, row.body_b) ? 2 : 0;
+  return {row.body_a, row.body_b, is_held(row) ? 1u : 0u, a_moves | b_moves};
+}
+
+/// Takes down all that pairs are made of: three numbers that say how, what blocks hold, what
+/// joints hold. @returns whether all is as it was.
 template <int D, int W>
-static bool is_held_as_before(StepScratch<D>& scratch) {
-  using Block = HeldBlock<D, W>;
+static bool is_held_as_before(Workers& workers, StepScratch<D>& scratch) {
+  constexpr std::size_t kOfBlock = sizeof(HeldBlock<D, W>) / 4;
+  constexpr std::size_t kOfJoint = sizeof(HeldJoint) / 4;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const std::size_t words =
-      2 + (sizeof(Block) * blocks.size() + sizeof(HeldJoint) * scratch.joint_rows.size()) / 4;
-  Ledger ledger(scratch.islands_solved.held_words, words);
-  ledger.put(static_cast<std::uint32_t>(kLaneCount<W>));
-  ledger.put(static_cast<std::uint32_t>(scratch.masses.size()));
-  for (const ContactBlock<D, W>& block : blocks) {
-    Block held;
-    std::memcpy(held.body_a, block.body_a, sizeof held.body_a);
-    std::memcpy(held.body_b, block.body_b, sizeof held.body_b);
-    held.moves_a = block.moves_a;
-    held.moves_b = block.moves_b;
-    std::memcpy(held.has_point, block.has_point, sizeof held.has_point);
-    ledger.put(held);
-  }
-  for (const JointRow<D>& row : scratch.joint_rows) {
-    const std::uint32_t a_moves = moves(scratch, row.body_a) ? 1 : 0;
-    const std::uint32_t b_moves = moves(scratch, row.body_b) ? 2 : 0;
-    ledger.put(HeldJoint{row.body_a, row.body_b, is_held(row) ? 1u : 0u, a_moves | b_moves});
-  }
-  return ledger.is_same();
+  const std::vector<JointRow<D>>& rows = scratch.joint_rows;
+  std::vector<std::uint32_t>& words = scratch.islands_solved.held_words;
+  constexpr std::size_t kBlocksAt = 3;
+  const std::size_t joints_at = kBlocksAt + kOfBlock * blocks.size();
+  const std::size_t count = joints_at + kOfJoint * rows.size();
+  Tally changes;
+  if (words.size() != count) changes.add(1);
+  words.resize(count);
+  const std::uint32_t how[kBlocksAt] = {static_cast<std::uint32_t>(kLaneCount<W>),
+                                        static_cast<std::uint32_t>(scratch.masses.size()),
+                                        static_cast<std::uint32_t>(blocks.size())};
+  if (!put(how, words.data())) changes.add(1);
+  const auto put_all = [&](int size, auto&& put_one) {
+    workers.parallel_for(size, kBodyGrain, [&](Range range) {
+      bool same = true;
+      for (int i = range.begin; i < range.end; ++i)
+        same = put_one(static_cast<std::size_t>(i)) && same;
+      if (!same) changes.add(1);
+    });
+  };
+  put_all(static_cast<int>(blocks.size()), [&](std::size_t i) {
+    return put(held_by(blocks[i]), words.data() + kBlocksAt + kOfBlock * i);
+  });
+  put_all(static_cast<int>(rows.size()), [&](std::size_t i) {
+    return put(held_by(scratch, rows[i]), words.data() + joints_at + kOfJoint * i);
+  });
+  return changes.sum() == 0;
 }
 
 template <int D, int W>
@@ -94,8 +105,8 @@ static void list_pairs_of(const ContactBlock<D, W>& block, int place, std::vecto
 }
 
 template <int D, int W>
-bool list_held(StepScratch<D>& scratch) {
-  if (is_held_as_before<D, W>(scratch)) return true;
+bool list_held(Workers& workers, StepScratch<D>& scratch) {
+  if (is_held_as_before<D, W>(workers, scratch)) return true;
   std::vector<HeldPair>& held = scratch.islands_solved.held;
   held.clear();
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;

@@ -213,7 +213,6 @@ static void search_all(const WorldState<D>& state, Workers& workers, StepScratch
 template <int D>
 static void list_met(const std::vector<ShapePair>& pairs, Workers& workers, StepScratch<D>& scratch,
                      std::vector<ShapePair>& out) {
-  constexpr int kGrain = 1024;
   const auto is_listed = [&](std::uint32_t fast, std::uint32_t other) {
     return meets(scratch, WayIs::kListed, fast, other) &&
            !meets(scratch, WayIs::kSearched, other, fast);
@@ -223,7 +222,8 @@ static void list_met(const std::vector<ShapePair>& pairs, Workers& workers, Step
       return is_listed(pair.shape_a, pair.shape_b) || is_listed(pair.shape_b, pair.shape_a);
     });
   };
-  list_in_chunks(workers, static_cast<int>(pairs.size()), kGrain, scratch.pair_chunks, out, list);
+  list_in_chunks(workers, static_cast<int>(pairs.size()), kLookGrain, scratch.pair_chunks, out,
+                 list);
 }
 
 /// The pairs of shapes of which one is of a fast body that may be stopped at the other, can pass

@@ -85,12 +85,12 @@ static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
 /// Reads contact blocks, joint rows and masses; writes the island solver, and which contacts and
 /// joint rows it takes. Serial.
 template <int D, int W>
-void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch) {
+void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   solver.work = {};
-  find_loaded<D, W>(context, scratch);
+  find_loaded<D, W>(context, workers, scratch);
   if (!solver.acts) return;
-  group_islands<D, W>(context, scratch);
+  group_islands<D, W>(context, workers, scratch);
   if (!solver.acts) return;
   find_swept<D, W>(scratch);
   take_rows<D, W>(context, scratch);

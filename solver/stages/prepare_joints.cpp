@@ -94,15 +94,22 @@ static void set_row(const StepContext<D>& context, const WorldState<D>& state,
 ///
 /// Reads joints, poses and masses; writes joint_rows, each from its own joint.
 template <int D>
-void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
+void prepare_joints(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch) {
   const std::vector<int>& order = scratch.joint_coloring.order;
   scratch.joint_rows.resize(order.size());
-  for (std::size_t i = 0; i < order.size(); ++i)
-    set_row(context, state, scratch, static_cast<std::uint32_t>(order[i]), scratch.joint_rows[i]);
+  workers.parallel_for(static_cast<int>(order.size()), kJointGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      set_row(context, state, scratch, static_cast<std::uint32_t>(order[place]),
+              scratch.joint_rows[place]);
+    }
+  });
 }
 
-template void prepare_joints(const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);
-template void prepare_joints(const StepContext<3>&, const WorldState<3>&, StepScratch<3>&);
+template void prepare_joints(const StepContext<2>&, const WorldState<2>&, Workers&,
+                             StepScratch<2>&);
+template void prepare_joints(const StepContext<3>&, const WorldState<3>&, Workers&,
+                             StepScratch<3>&);
 
 }  // namespace cycloid::solver

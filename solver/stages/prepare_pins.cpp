@@ -112,49 +112,61 @@ static void clear(const PinForm& form, std::uint32_t resting_body, PinTurns<D, W
   block.turns = &turns;
 }
 
-/// Clears the blocks of one colour, form after form. @returns by form, the first lane of its first
-/// block, all lanes of all blocks being counted in a row.
-template <int D, int W>
-static std::array<int, PinForm::kForms> clear_color(const PinCounts& counts,
-                                                    std::uint32_t resting_body, int block,
-                                                    PinBlocks<D, W>& out) {
+/// By form, the first lane of its first block in a colour, all lanes of all blocks being counted in
+/// a row.
+static std::array<int, PinForm::kForms> first_lanes(const PinCounts& counts, int block, int width) {
   std::array<int, PinForm::kForms> first{};
   for (int form = 0; form < PinForm::kForms; ++form) {
-    first[static_cast<std::size_t>(form)] = block * kLaneCount<W>;
-    const int end = block + (counts.of[form] + kLaneCount<W> - 1) / kLaneCount<W>;
-    for (; block < end; ++block) {
-      const auto at = static_cast<std::size_t>(block);
-      clear(PinForm::of_number(form), resting_body, out.turns[at], out.blocks[at]);
-    }
+    first[static_cast<std::size_t>(form)] = block * width;
+    block += (counts.of[form] + width - 1) / width;
   }
   return first;
 }
 
-/// Blocks of W pins of one form, colour by colour.
+/// Gives every pin a lane: those of one form stand in a row, colour by colour.
 template <int D, int W>
-static void fill_blocks(const WorldState<D>& state, StepScratch<D>& scratch, PinBlocks<D, W>& out) {
-  Pins<D>& pins = scratch.pins;
+static void assign_lanes(const StepScratch<D>& scratch, Pins<D>& pins, PinBlocks<D, W>& out) {
   out.colors.clear();
   int end = 0;
   for (const PinCounts& counts : pins.counts) {
     out.colors.push_back({end, end + counts.blocks(kLaneCount<W>)});
     end = out.colors.back().end;
   }
-  out.blocks.resize(static_cast<std::size_t>(end));
-  out.turns.resize(static_cast<std::size_t>(end));
+  pins.place_of.assign(static_cast<std::size_t>(end * kLaneCount<W>), kNone);
   for (std::size_t c = 0; c < pins.counts.size(); ++c) {
-    std::array<int, PinForm::kForms> next = clear_color(
-        pins.counts[c], static_cast<std::uint32_t>(state.bodies.size()), out.colors[c].begin, out);
+    std::array<int, PinForm::kForms> next =
+        first_lanes(pins.counts[c], out.colors[c].begin, kLaneCount<W>);
     const Range color = scratch.joint_coloring.colors[c];
     for (int i = color.begin; i < color.end; ++i) {
       const auto place = static_cast<std::size_t>(i);
       if (pins.form_of[place] == Pins<D>::kNone) continue;
       const int lane = next[static_cast<std::size_t>(pins.form_of[place])]++;
       pins.lane_of[place] = lane;
-      set_pin(state, scratch.joint_rows[place], static_cast<std::uint32_t>(i), lane % kLaneCount<W>,
-              out.blocks[static_cast<std::size_t>(lane / kLaneCount<W>)]);
+      pins.place_of[static_cast<std::size_t>(lane)] = static_cast<std::uint32_t>(i);
     }
   }
+}
+
+/// Blocks of W pins of one form, each by itself. @pre assign_lanes.
+template <int D, int W>
+static void fill_blocks(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch,
+                        PinBlocks<D, W>& out) {
+  Pins<D>& pins = scratch.pins;
+  assign_lanes(scratch, pins, out);
+  const auto resting_body = static_cast<std::uint32_t>(state.bodies.size());
+  const std::size_t count = pins.place_of.size() / kLaneCount<W>;
+  out.blocks.resize(count);
+  out.turns.resize(count);
+  workers.parallel_for(static_cast<int>(count), kBlockGrain, [&](Range range) {
+    for (int b = range.begin; b < range.end; ++b) {
+      const auto at = static_cast<std::size_t>(b);
+      const std::uint32_t* places = pins.place_of.data() + at * kLaneCount<W>;
+      PinBlock<D, W>& block = out.blocks[at];
+      clear(PinForm::of_number(pins.form_of[places[0]]), resting_body, out.turns[at], block);
+      for (int lane = 0; lane < kLaneCount<W> && places[lane] != kNone; ++lane)
+        set_pin(state, scratch.joint_rows[places[lane]], places[lane], lane, block);
+    }
+  });
 }
 
 static void name_cone(const PinForm&, JointRow<2>&) {}
@@ -170,33 +182,45 @@ static void name_rows(const PinForm& form, JointRow<D>& row) {
   name_cone(form, row);
 }
 
-/// Counts the pins of each colour by form, and lists the rows that are none.
+/// Which rows are pins, and of which form. Each row by itself; those of the overflow are none.
 template <int D>
-static void sort_rows(const StepContext<D>& context, const WorldState<D>& state,
-                      StepScratch<D>& scratch) {
-  const bool as_pins = sweeps_alone(context.tuning);
+static void find_forms(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                       StepScratch<D>& scratch) {
+  Pins<D>& pins = scratch.pins;
+  pins.form_of.assign(scratch.joint_rows.size(), Pins<D>::kNone);
+  if (!sweeps_alone(context.tuning)) return;
+  const int count = scratch.joint_coloring.overflow.begin;
+  workers.parallel_for(count, kJointGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const auto place = static_cast<std::size_t>(i);
+      JointRow<D>& row = scratch.joint_rows[place];
+      const std::optional<PinForm> form = form_of(state.joints[row.joint], row);
+      if (!form) continue;
+      name_rows(*form, row);
+      pins.form_of[place] = static_cast<std::int8_t>(form->number());
+    }
+  });
+}
+
+/// Counts the pins of each colour by form, and lists the rows that are none. @pre find_forms.
+template <int D>
+static void sort_rows(StepScratch<D>& scratch) {
   const Coloring& joints = scratch.joint_coloring;
   Coloring& single = scratch.single_rows;
   Pins<D>& pins = scratch.pins;
   single.order.clear();
   single.colors.clear();
   pins.counts.clear();
-  pins.form_of.assign(scratch.joint_rows.size(), Pins<D>::kNone);
   pins.lane_of.assign(scratch.joint_rows.size(), Pins<D>::kNone);
   for (const Range& color : joints.colors) {
     PinCounts& counts = pins.counts.emplace_back();
     const auto begin = static_cast<int>(single.order.size());
     for (int i = color.begin; i < color.end; ++i) {
-      const auto place = static_cast<std::size_t>(i);
-      JointRow<D>& row = scratch.joint_rows[place];
-      const auto form = as_pins ? form_of(state.joints[row.joint], row) : std::nullopt;
-      if (!form) {
+      const std::int8_t form = pins.form_of[static_cast<std::size_t>(i)];
+      if (form == Pins<D>::kNone)
         single.order.push_back(i);
-        continue;
-      }
-      name_rows(*form, row);
-      pins.form_of[place] = static_cast<std::int8_t>(form->number());
-      ++counts.of[form->number()];
+      else
+        ++counts.of[form];
     }
     single.colors.push_back({begin, static_cast<int>(single.order.size())});
   }
@@ -221,13 +245,14 @@ static int width_of_pins(int lanes, const Pins<D>& pins) {
 /// by one, and so is the overflow.
 ///
 /// Reads joints, their rows, bodies and the colouring; writes the blocks of pins and the list of
-/// the other rows. Serial; which pins share a block does not show.
+/// the other rows. Each row and each block by itself; which pins share a block does not show.
 template <int D>
-void prepare_pins(const StepContext<D>& context, const WorldState<D>& state,
+void prepare_pins(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                   StepScratch<D>& scratch) {
-  sort_rows(context, state, scratch);
+  find_forms(context, state, workers, scratch);
+  sort_rows(scratch);
   scratch.pins.lanes = width_of_pins(context.lanes, scratch.pins);
-  with_blocks(scratch.pins, [&](auto& blocks) { fill_blocks(state, scratch, blocks); });
+  with_blocks(scratch.pins, [&](auto& blocks) { fill_blocks(state, workers, scratch, blocks); });
 }
 
 template <int W>
@@ -254,18 +279,22 @@ static void store_pin(const PinBlock<D, W>& block, int lane, JointRow<D>& row) {
 /// Reads the blocks of pins; writes the impulses of their joint rows, for the next tick's warm
 /// start.
 template <int D>
-void store_pins(StepScratch<D>& scratch) {
+void store_pins(Workers& workers, StepScratch<D>& scratch) {
   with_blocks(scratch.pins, [&]<int W>(const PinBlocks<D, W>& pins) {
-    for (const PinBlock<D, W>& block : pins.blocks)
-      for (int lane = 0; lane < kLaneCount<W>; ++lane)
-        if (block.place[lane] != kNone)
-          store_pin(block, lane, scratch.joint_rows[block.place[lane]]);
+    workers.parallel_for(static_cast<int>(pins.blocks.size()), kBlockGrain, [&](Range range) {
+      for (int i = range.begin; i < range.end; ++i) {
+        const PinBlock<D, W>& block = pins.blocks[static_cast<std::size_t>(i)];
+        for (int lane = 0; lane < kLaneCount<W>; ++lane)
+          if (block.place[lane] != kNone)
+            store_pin(block, lane, scratch.joint_rows[block.place[lane]]);
+      }
+    });
   });
 }
 
-template void prepare_pins(const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);
-template void prepare_pins(const StepContext<3>&, const WorldState<3>&, StepScratch<3>&);
-template void store_pins(StepScratch<2>&);
-template void store_pins(StepScratch<3>&);
+template void prepare_pins(const StepContext<2>&, const WorldState<2>&, Workers&, StepScratch<2>&);
+template void prepare_pins(const StepContext<3>&, const WorldState<3>&, Workers&, StepScratch<3>&);
+template void store_pins(Workers&, StepScratch<2>&);
+template void store_pins(Workers&, StepScratch<3>&);
 
 }  // namespace cycloid::solver

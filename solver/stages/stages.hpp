@@ -18,6 +18,13 @@ struct Statistics;
 template <int D>
 bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch);
+/// @param shapes  More than any slot.
+template <int D>
+void merge_candidates(std::uint32_t shapes, Workers& workers, StepScratch<D>& scratch);
+template <int D>
+void wake_candidates(StepScratch<D>& scratch);
+template <int D>
+void lay_candidates_to_rest(PairCache<D>& cache);
 template <int D>
 bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch);
@@ -42,10 +49,10 @@ template <int D>
 void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
                    StepScratch<D>& scratch);
 template <int D>
-void prepare_joints(const StepContext<D>& context, const WorldState<D>& state,
+void prepare_joints(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch);
 template <int D>
-void prepare_pins(const StepContext<D>& context, const WorldState<D>& state,
+void prepare_pins(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                   StepScratch<D>& scratch);
 template <int D, int W>
 void join_loaded_lots(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
@@ -78,11 +85,11 @@ void solve_trees(const StepContext<D>& context, Sweep sweep, StepScratch<D>& scr
 template <int D>
 LoadBounds load_bounds(const StepContext<D>& context);
 template <int D, int W>
-void find_loaded(const StepContext<D>& context, StepScratch<D>& scratch);
+void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
-void group_islands(const StepContext<D>& context, StepScratch<D>& scratch);
+void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
-void prepare_islands(const StepContext<D>& context, StepScratch<D>& scratch);
+void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
 StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D>& state,
                                StepScratch<D>& scratch);
@@ -116,7 +123,7 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
 template <int D, int W>
 void store_impulses(const Lot& lot, Workers& workers, StepScratch<D>& scratch);
 template <int D>
-void store_pins(StepScratch<D>& scratch);
+void store_pins(Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void list_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch);
@@ -134,12 +141,14 @@ void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state);
 template <int D>
 void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state);
 template <int D>
-Statistics count_work(const WorldState<D>& state, const StepScratch<D>& scratch);
+Statistics count_work(const WorldState<D>& state, Workers& workers, const StepScratch<D>& scratch);
 
 /// Ranges of this many bodies, blocks or joints go to one thread at a time; of pairs, kPairGrain.
 inline constexpr int kBodyGrain = 256;
-inline constexpr int kBlockGrain = 16;
+inline constexpr int kBlockGrain = 8;
 inline constexpr int kJointGrain = 32;
+/// Of contacts or pairs of which little is asked, so many.
+inline constexpr int kLookGrain = 1024;
 
 /// Runs `run(range)` for ranges of every colour in order, those of one colour in parallel, and for
 /// the overflow one by one. The one place that knows why lanes and threads cannot change a bit:

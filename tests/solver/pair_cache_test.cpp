@@ -95,6 +95,19 @@ TEST(PairCache, OfManyFastBodiesShowsNeitherInPairsNorInBits) {
   EXPECT_GT(keeps.statistics().pairs, 300u);
 }
 
+// So many candidates that threads merge them by ranges of their keys: from the first tick on, where
+// there are none yet, and with fresh ones in every range.
+TEST(PairCache, MergedByRangesShowsNeitherInPairsNorInBits) {
+  constexpr std::uint32_t kSharedMin = 4096;
+  for (const int workers : {2, 5}) {
+    World<2> keeps = hall(3000, 18.0f);
+    World<2> forgets = hall(3000, 18.0f);
+    ASSERT_TRUE(keeps.set_workers(workers).ok());
+    expect_same(keeps, forgets, 8);
+    EXPECT_GT(keeps.statistics().pairs, kSharedMin);
+  }
+}
+
 // In a crowd all look in each tick; when it has parted, candidates are kept again.
 TEST(PairCache, OfACrowdThatPartsShowsNeitherInPairsNorInBits) {
   constexpr std::uint32_t kCrowd = 120;
