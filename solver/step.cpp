@@ -259,7 +259,7 @@ Error World<D>::step_in_lanes() {
   if (!state_.particles.empty()) scratch.before = state_;
   finalize(*workers_, scratch, state_);
   traced(Phase::kFinalize);
-  rest_islands(context, scratch, state_);
+  rest_islands(context, *workers_, scratch, state_);
   traced(Phase::kRest);
   if (!state_.particles.empty() && !particles_moved(context, scratch, state_)) {
     state_ = scratch.before;

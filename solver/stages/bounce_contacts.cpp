@@ -15,17 +15,18 @@ template <int D, int W>
 void bounce_contacts(const StepContext<D>& context, const Lot& lot, Workers& workers,
                      StepScratch<D>& scratch) {
   if (!lot.bounces) return;
-  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-  const BlockRange<D, W> all = block_range<D, W>(lot, scratch, contacts.blocks_of(lot));
-  ContactKernels<D, W>::forget_bounces(all);
+  for_all_blocks<D, W>(lot, workers, scratch, [](const BlockRange<D, W>& blocks) {
+    ContactKernels<D, W>::forget_bounces(blocks);
+  });
   for (int sweep = 0; sweep < kBounceSweeps; ++sweep) {
+    Tally bounces;
     for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
       ContactKernels<D, W>::bounce(context, blocks);
+      if (std::any_of(blocks.begin, blocks.end, [](const auto& block) { return block.bounced; }))
+        bounces.add(1);
     });
     // Where nothing has bounced, the next sweep would see the same velocities.
-    if (std::none_of(all.begin, all.end,
-                     [](const ContactBlock<D, W>& block) { return block.bounced; }))
-      return;
+    if (bounces.sum() == 0) return;
   }
 }
 

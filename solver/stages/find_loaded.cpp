@@ -80,10 +80,15 @@ void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>
     loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
   };
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  for (const ContactBlock<D, W>& block : blocks)
-    for (int lane = 0; lane < kLaneCount<W> && block.loaded >> lane != 0; ++lane)
-      if ((block.loaded >> lane & 1) != 0)
-        add(block.body_a[lane], block.body_b[lane], solver.loaded);
+  const auto list_contacts = [&](Range range, std::vector<std::uint32_t>& loaded) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const ContactBlock<D, W>& block = blocks[static_cast<std::size_t>(i)];
+      for (int lane = 0; lane < kLaneCount<W> && block.loaded >> lane != 0; ++lane)
+        if ((block.loaded >> lane & 1) != 0) add(block.body_a[lane], block.body_b[lane], loaded);
+    }
+  };
+  list_in_chunks(workers, static_cast<int>(blocks.size()), kJointGrain, scratch.leaving_chunks,
+                 solver.loaded, list_contacts);
   const auto list_joints = [&](Range range, std::vector<std::uint32_t>& loaded) {
     for (int i = range.begin; i < range.end; ++i) {
       const JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];

@@ -178,21 +178,28 @@ static bool rests_long(const StepContext<D>& context, Body<D>& body) {
 ///
 /// Reads motions, contacts, joints and awake; writes rest_ticks, asleep, islands where somebody has
 /// rested for long, of bodies that fall asleep velocities, and who is asked in the next tick
-/// whether it takes part: nobody else can have changed. Serial, in slot order.
+/// whether it takes part: nobody else can have changed. Each body by itself; islands serially, in
+/// slot order.
 template <int D>
-void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state) {
+void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch,
+                  WorldState<D>& state) {
   const auto takes_part = [&](std::uint32_t i) { return state.bodies[i].inverse_mass != 0.0f; };
   std::vector<std::uint8_t>& restless = scratch.island_flags;
   restless.resize(state.bodies.size());
-  bool any_rests = false;
+  Tally resting;
   scratch.kept->active_bodies.ask_next(scratch.awake_bodies);
-  for (const std::uint32_t i : scratch.awake_bodies) {
-    if (!takes_part(i)) continue;
-    const bool rests = rests_long(context, state.bodies[i]);
-    restless[i] = rests ? 0 : 1;
-    any_rests = any_rests || rests;
-  }
-  if (!any_rests || !(context.tuning.sleep_s > 0.0f)) return;
+  workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
+    bool any_rests = false;
+    for (int place = range.begin; place < range.end; ++place) {
+      const std::uint32_t i = scratch.awake_bodies[static_cast<std::size_t>(place)];
+      if (!takes_part(i)) continue;
+      const bool rests = rests_long(context, state.bodies[i]);
+      restless[i] = rests ? 0 : 1;
+      any_rests = any_rests || rests;
+    }
+    if (any_rests) resting.add(1);
+  });
+  if (resting.sum() == 0 || !(context.tuning.sleep_s > 0.0f)) return;
   if (!scratch.islands_are_known) find_islands(state, scratch);
   for (const std::uint32_t i : scratch.awake_bodies)
     if (takes_part(i) && (restless[i] != 0 || scratch.kept_awake[i] != 0))
@@ -209,7 +216,7 @@ void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldS
 
 template void wake_islands(const StepContext<2>&, const WorldState<2>&, StepScratch<2>&);
 template void wake_islands(const StepContext<3>&, const WorldState<3>&, StepScratch<3>&);
-template void rest_islands(const StepContext<2>&, StepScratch<2>&, WorldState<2>&);
-template void rest_islands(const StepContext<3>&, StepScratch<3>&, WorldState<3>&);
+template void rest_islands(const StepContext<2>&, Workers&, StepScratch<2>&, WorldState<2>&);
+template void rest_islands(const StepContext<3>&, Workers&, StepScratch<3>&, WorldState<3>&);
 
 }  // namespace cycloid::solver

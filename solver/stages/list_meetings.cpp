@@ -62,32 +62,46 @@ static void find_way(const StepContext<D>& context, const WorldState<D>& state, 
                     stop_distance(context.tuning, body.thickness));
 }
 
+/// Of a range of fast bodies the shapes whose ways do not lie in their boxes of this tick.
+template <int D>
+static void list_outside(const StepContext<D>& context, const WorldState<D>& state, Range range,
+                         StepScratch<D>& scratch, std::vector<std::uint32_t>& outside) {
+  const PairCache<D>& cache = scratch.kept->pair_cache;
+  for (int i = range.begin; i < range.end; ++i) {
+    const std::uint32_t slot = scratch.fast_bodies[static_cast<std::size_t>(i)].slot;
+    const Body<D>& body = state.bodies[slot];
+    const bool stays = stays_in_boxes(context, body, scratch.motions[slot],
+                                      stop_distance(context.tuning, body.thickness));
+    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
+      if (stays && cache.active[s] != 0) continue;
+      find_way(context, state, s, scratch);
+      scratch.way_is[s] = WayIs::kListed;
+      if (cache.active[s] == 0 || !lies_in(scratch.ways[s], cache.boxes[s])) outside.push_back(s);
+    }
+  }
+}
+
 /// Sorts the shapes of fast bodies by where all that they may meet is listed: among the pairs of
 /// this tick where their way lies in their box, else among the candidates where it lies in their
 /// fat box; else they will search.
 template <int D>
-static void mark_ways(const StepContext<D>& context, const WorldState<D>& state,
+static void mark_ways(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
   const PairCache<D>& cache = scratch.kept->pair_cache;
   scratch.ways.resize(state.shapes.size());
   scratch.way_is.assign(state.shapes.size(), WayIs::kUnknown);
   scratch.leaving.clear();
   scratch.searching.clear();
-  for (const FastBody& fast : scratch.fast_bodies) {
-    const Body<D>& body = state.bodies[fast.slot];
-    const Motion<D>& motion = scratch.motions[fast.slot];
-    const bool stays =
-        stays_in_boxes(context, body, motion, stop_distance(context.tuning, body.thickness));
-    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
-      if (stays && cache.active[s] != 0) continue;
-      find_way(context, state, s, scratch);
-      scratch.way_is[s] = WayIs::kListed;
-      if (cache.active[s] != 0 && lies_in(scratch.ways[s], cache.boxes[s])) continue;
-      if (cache.active[s] != 0 && lies_in(scratch.ways[s], cache.fat.box(s)))
-        scratch.leaving.push_back(s);
-      else
-        scratch.searching.push_back(s);
-    }
+  std::vector<std::uint32_t>& outside = scratch.looking;
+  outside.clear();
+  list_in_chunks(workers, static_cast<int>(scratch.fast_bodies.size()), kPairGrain,
+                 scratch.leaving_chunks, outside,
+                 [&](Range range, std::vector<std::uint32_t>& out) {
+                   list_outside(context, state, range, scratch, out);
+                 });
+  for (const std::uint32_t s : outside) {
+    const bool is_near = cache.active[s] != 0 && lies_in(scratch.ways[s], cache.fat.box(s));
+    (is_near ? scratch.leaving : scratch.searching).push_back(s);
   }
 }
 
@@ -240,7 +254,7 @@ void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Wo
   constexpr std::size_t kCandidatesPerSearch = 100;
   scratch.meetings.clear();
   if (scratch.fast_bodies.empty()) return;
-  mark_ways(context, state, scratch);
+  mark_ways(context, state, workers, scratch);
   const std::vector<ShapePair>& candidates = scratch.kept->pair_cache.candidates;
   std::vector<std::uint32_t>& searching = scratch.searching;
   const bool many_leave = scratch.leaving.size() * kCandidatesPerSearch > candidates.size();

@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -55,24 +57,24 @@ static void list_met(const WorldState<D>& state, StepScratch<D>& scratch) {
 /// All bodies at rest and without mass, as they are for those that are not awake. The step before,
 /// maybe another world's, left all but those it met so: a world may be full of sleepers.
 template <int D>
-static void rest_all(const WorldState<D>& state, StepScratch<D>& scratch) {
+static void rest_all(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   Motion<D> resting{};
   resting.delta_rotation = identity_rotation<D>();
-  const std::size_t count = state.bodies.size() + 1;
-  if (scratch.met_many) {
-    scratch.motions.assign(count, resting);
-    scratch.masses.assign(count, BodyMass<D>{});
-    scratch.inertia_turned.assign(count, 0);
-    return;
-  }
-  for (const std::uint32_t slot : scratch.met) {
+  const auto rest = [&](std::size_t slot) {
     scratch.motions[slot] = resting;
     scratch.masses[slot] = {};
     scratch.inertia_turned[slot] = 0;
-  }
+  };
+  const std::size_t before = scratch.motions.size();
+  const std::size_t count = state.bodies.size() + 1;
+  for (const std::uint32_t slot : scratch.met) rest(slot);
   scratch.motions.resize(count, resting);
   scratch.masses.resize(count, BodyMass<D>{});
   scratch.inertia_turned.resize(count, 0);
+  if (!scratch.met_many) return;
+  workers.parallel_for(static_cast<int>(std::min(before, count)), kLookGrain, [&](Range range) {
+    for (int slot = range.begin; slot < range.end; ++slot) rest(static_cast<std::size_t>(slot));
+  });
 }
 
 /// I^-1 in the world frame = R I_body^-1 R^T, and the motion at the start of the tick. A body that
@@ -84,7 +86,7 @@ static void rest_all(const WorldState<D>& state, StepScratch<D>& scratch) {
 template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch) {
-  rest_all(state, scratch);
+  rest_all(state, workers, scratch);
   list_met(state, scratch);
   scratch.accelerations.resize(scratch.moving_bodies.size());
   constexpr float kFar = 1.0f;  // m in a tick.

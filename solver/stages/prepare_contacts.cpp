@@ -165,17 +165,21 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
     }
   };
   const LoadBounds bounds = load_bounds(context);
+  Tally follow;
+  Tally bounce;
   workers.parallel_for(all.end - all.begin, kBlockGrain, [&](Range range) {
     const Range blocks{all.begin + range.begin, all.begin + range.end};
     for (int i = blocks.begin; i < blocks.end; ++i) fill(i);
-    ContactKernels<D, W>::complete(bounds, block_range<D, W>(lot, scratch, blocks));
+    const BlockRange<D, W> filled = block_range<D, W>(lot, scratch, blocks);
+    ContactKernels<D, W>::complete(bounds, filled);
+    const auto is_among = [&](bool ContactBlock<D, W>::*flag) {
+      return std::any_of(filled.begin, filled.end, [&](const auto& block) { return block.*flag; });
+    };
+    if (is_among(&ContactBlock<D, W>::follows)) follow.add(1);
+    if (is_among(&ContactBlock<D, W>::bounces)) bounce.add(1);
   });
-  const BlockRange<D, W> filled = block_range<D, W>(lot, scratch, all);
-  lot.follows = lot.bounces = false;
-  for (const ContactBlock<D, W>* block = filled.begin; block != filled.end; ++block) {
-    lot.follows = lot.follows || block->follows;
-    lot.bounces = lot.bounces || block->bounces;
-  }
+  lot.follows = follow.sum() > 0;
+  lot.bounces = bounce.sum() > 0;
 }
 
 template <int D, int W>

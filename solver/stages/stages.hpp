@@ -139,7 +139,8 @@ Fault find_fault(const WorldState<D>& state, Workers& workers, const StepScratch
 template <int D>
 void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state);
 template <int D>
-void rest_islands(const StepContext<D>& context, StepScratch<D>& scratch, WorldState<D>& state);
+void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch,
+                  WorldState<D>& state);
 template <int D>
 Statistics count_work(const WorldState<D>& state, Workers& workers, const StepScratch<D>& scratch);
 
