@@ -163,7 +163,6 @@ struct StepScratch : ContactList<D> {
   std::uint32_t bodies_asleep = 0;  ///< Those that took no part as the tick began, and have mass;
                                     ///< later, that do not.
 
-  bool islands_are_known = false;        ///< Only where somebody wakes, or is to fall asleep.
   std::vector<std::uint32_t> islands;    ///< Parent of each body; the root is its lowest slot.
   std::vector<std::uint8_t> kept_awake;  ///< By body: something drives it.
   std::vector<std::uint8_t> island_flags;

@@ -46,7 +46,6 @@ static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
     link(state.shapes[contact.shape_a].body, state.shapes[contact.shape_b].body, false);
   for (const Joint<D>& joint : state.joints)
     if (joint.kind != JointKind::kFree) link(joint.body_a, joint.body_b, drives(joint));
-  scratch.islands_are_known = true;
 }
 
 /// Whether something that is active, or drives, holds on to a body that is asleep.
@@ -155,7 +154,6 @@ void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
   const ActiveBodies& active = scratch.kept->active_bodies;
   scratch.awake.assign(active.active.begin(), active.active.end());
   scratch.awake.push_back(0);
-  scratch.islands_are_known = false;
   scratch.awake_bodies.assign(active.slots.begin(), active.slots.end());
   if (!is_written(scratch.kept->trace) && !wakes_somebody(state, scratch)) return;
   if (!wake_by_islands(state, scratch)) return;
@@ -171,6 +169,36 @@ static bool rests_long(const StepContext<D>& context, Body<D>& body) {
   body.rest_ticks = rested ? body.rest_ticks + 1 : 0;  // Who has just woken starts anew.
   body.asleep = 0;
   return static_cast<float>(body.rest_ticks) >= context.tuning.sleep_s / context.tick_s;
+}
+
+/// Joins what contacts and joints hold together of those that have rested for long, and marks as
+/// restless who is held by somebody that has not, or is kept awake: their islands stay awake,
+/// whatever else belongs to them. So of a heap that players stir only what rests is joined.
+/// @pre of who is awake and has mass it is known who is restless.
+template <int D>
+static void join_resting(const WorldState<D>& state, StepScratch<D>& scratch) {
+  const ActiveBodies& bodies = scratch.kept->active_bodies;
+  std::vector<std::uint8_t>& restless = scratch.island_flags;
+  std::vector<std::uint32_t>& parent = scratch.islands;
+  parent.resize(state.bodies.size());
+  for (const std::uint32_t i : scratch.awake_bodies) parent[i] = i;
+  const auto rests = [&](std::uint32_t i) {
+    return bodies.has_mass[i] != 0 && scratch.awake[i] != 0 && restless[i] == 0;
+  };
+  const auto link = [&](std::uint32_t a, std::uint32_t b, bool keep) {
+    const bool a_rests = rests(a);
+    const bool b_rests = rests(b);
+    if (a_rests && b_rests && !keep) return join(parent, a, b);
+    const auto is_free = [&](std::uint32_t other) {
+      return !keep && bodies.has_mass[other] == 0 && bodies.active[other] == 0;
+    };
+    if (a_rests && !is_free(b)) restless[a] = 1;
+    if (b_rests && !is_free(a)) restless[b] = 1;
+  };
+  for (const Contact<D>& contact : scratch.contacts)
+    link(state.shapes[contact.shape_a].body, state.shapes[contact.shape_b].body, false);
+  for (const Joint<D>& joint : state.joints)
+    if (joint.kind != JointKind::kFree) link(joint.body_a, joint.body_b, drives(joint));
 }
 
 /// An island whose bodies have all been slower than sleep_speed for sleep_s falls asleep: its
@@ -200,10 +228,9 @@ void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D
     if (any_rests) resting.add(1);
   });
   if (resting.sum() == 0 || !(context.tuning.sleep_s > 0.0f)) return;
-  if (!scratch.islands_are_known) find_islands(state, scratch);
+  join_resting(state, scratch);
   for (const std::uint32_t i : scratch.awake_bodies)
-    if (takes_part(i) && (restless[i] != 0 || scratch.kept_awake[i] != 0))
-      restless[root_of(scratch.islands, i)] = 1;
+    if (takes_part(i) && restless[i] != 0) restless[root_of(scratch.islands, i)] = 1;
   for (const std::uint32_t i : scratch.awake_bodies) {
     if (!takes_part(i) || restless[root_of(scratch.islands, i)] != 0) continue;
     Body<D>& body = state.bodies[i];

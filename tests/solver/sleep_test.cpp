@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <map>
+#include <numeric>
 #include <set>
 
 #include "tests/solver/world_fixture.hpp"
@@ -186,6 +188,94 @@ TEST(Sleep, ARestoredSleeperWakesToTheSameBits) {
     step(other, 1);
     ASSERT_EQ(world.digest(), other.digest()) << tick;
   }
+}
+
+/// What one tick has left of an island.
+struct IslandSeen {
+  int bodies = 0;
+  int asleep = 0;
+  int rested = 0;  ///< For long enough to fall asleep.
+  bool is_kept = false;
+};
+
+/// Islands by the lowest slot, by contacts and joints of the state alone.
+static std::map<std::uint32_t, IslandSeen> islands_of(const WorldState<2>& state) {
+  std::vector<std::uint32_t> root(state.bodies.size());
+  std::iota(root.begin(), root.end(), 0u);
+  std::vector<std::uint8_t> is_kept(root.size(), 0);
+  const auto moves = [&](std::uint32_t i) { return state.bodies[i].inverse_mass > 0.0f; };
+  const auto link = [&](std::uint32_t a, std::uint32_t b, bool drives) {
+    for (const auto& [one, other] : {std::pair{a, b}, std::pair{b, a}}) {
+      const bool pushes = !moves(other) && state.bodies[other].velocity[0] != 0.0f;
+      if (moves(one) && (drives || pushes)) is_kept[one] = 1;
+    }
+    if (!moves(a) || !moves(b)) return;
+    const auto [least, most] = std::minmax(root[a], root[b]);
+    for (std::uint32_t& of : root)
+      if (of == most) of = least;
+  };
+  for (const Contact<2>& contact : state.contacts)
+    link(state.shapes[contact.shape_a].body, state.shapes[contact.shape_b].body, false);
+  for (const Joint<2>& joint : state.joints)
+    if (joint.kind != JointKind::kFree) link(joint.body_a, joint.body_b, joint.motor_speed != 0.0f);
+  const auto& header = state.header;
+  std::map<std::uint32_t, IslandSeen> islands;
+  for (std::uint32_t i = 0; i < root.size(); ++i) {
+    const Body<2>& body = state.bodies[i];
+    if (!moves(i)) continue;
+    IslandSeen& island = islands[root[i]];
+    ++island.bodies;
+    island.asleep += body.asleep != 0 ? 1 : 0;
+    const bool rested =
+        static_cast<float>(body.rest_ticks) >= header.tuning.sleep_s / header.tick_s;
+    island.rested += rested ? 1 : 0;
+    island.is_kept = island.is_kept || is_kept[i] != 0;
+  }
+  return islands;
+}
+
+// Stacks of which some are poked, one stands on a platform that creeps, and one leans on a wheel
+// that a motor turns: parts of those rest for long beside others that do not.
+TEST(Sleep, IslandsFallAsleepAsWholesAndAsSoonAsTheyMay) {
+  constexpr int kStacks = 8;
+  World<2> world = make_world(with_gravity<2>());
+  const BodyId ground = add_ground<2>(world, up<2>());
+  std::vector<std::vector<BodyId>> stacks;
+  for (int i = 0; i < kStacks; ++i)
+    stacks.push_back(add_stack(world, 5, 1.02f * static_cast<float>(i) + (i < 4 ? 0.0f : 20.0f)));
+  BodyDef<2> platform;
+  platform.kind = BodyKind::kKinematic;
+  platform.position = {{-20.0f, 1.0f}};
+  platform.velocity = {{0.01f, 0.0f}};
+  add(world, platform, box(3.0f, 0.1f));
+  for (int i = 0; i < 3; ++i)
+    add_at<2>(world, {{-20.0f, 1.6f + static_cast<float>(i)}}, box(0.5f, 0.5f));
+  JointDef<2> axle;
+  axle.body_a = ground;
+  axle.body_b = add_at<2>(world, {{-40.0f, 0.5f}}, ball<2>(0.5f));
+  axle.anchor_a = {{-40.0f, 0.5f}};
+  axle.motor = MotorKind::kSpeed;
+  axle.motor_speed = 0.001f;
+  axle.motor_max = 1.0f;
+  ASSERT_TRUE(world.create_joint(axle).ok());
+  add_at<2>(world, {{-40.0f, 1.5f}}, box(0.5f, 0.5f));
+  int mixed = 0;
+  int fell_asleep = 0;
+  for (int tick = 0; tick < 900; ++tick) {
+    if (tick % 20 == 0) {
+      const BodyId poked = stacks[static_cast<std::size_t>(tick / 20 * 3 % kStacks)].back();
+      ASSERT_TRUE(world.apply_impulse(poked, {{tick < 450 ? 0.3f : 0.0f, 0.0f}}).ok());
+    }
+    step(world, 1);
+    for (const auto& [slot, island] : islands_of(world.state())) {
+      const bool all_rest = island.rested == island.bodies && !island.is_kept;
+      ASSERT_EQ(island.asleep, all_rest ? island.bodies : 0) << "tick " << tick << " of " << slot;
+      if (island.rested > 0 && island.rested < island.bodies) ++mixed;
+      if (all_rest) ++fell_asleep;
+    }
+  }
+  EXPECT_GT(mixed, 100);
+  EXPECT_GT(fell_asleep, 100);
 }
 
 /// Stacks in a row that have fallen asleep, and balls that roll and hop between some of them.
