@@ -1,4 +1,5 @@
 #include <cstring>
+#include <span>
 
 #include "solver/collision/collide.hpp"
 #include "solver/stages/active_contacts.hpp"
@@ -171,6 +172,21 @@ static bool rests_long(const StepContext<D>& context, Body<D>& body) {
   return static_cast<float>(body.rest_ticks) >= context.tuning.sleep_s / context.tick_s;
 }
 
+/// Counts the ticks at rest of bodies that are awake, and says of each with mass whether it is
+/// restless. @returns whether any has rested for long.
+template <int D>
+static bool any_rests(const StepContext<D>& context, std::span<const std::uint32_t> slots,
+                      Body<D>* bodies, std::uint8_t* restless) {
+  bool any = false;
+  for (const std::uint32_t slot : slots) {
+    if (bodies[slot].inverse_mass == 0.0f) continue;
+    const bool rests = rests_long(context, bodies[slot]);
+    restless[slot] = rests ? 0 : 1;
+    any = any || rests;
+  }
+  return any;
+}
+
 /// Joins what contacts and joints hold together of those that have rested for long, and marks as
 /// restless who is held by somebody that has not, or is kept awake: their islands stay awake,
 /// whatever else belongs to them. So of a heap that players stir only what rests is joined.
@@ -217,15 +233,9 @@ void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D
   Tally resting;
   scratch.kept->active_bodies.ask_next(scratch.awake_bodies);
   workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
-    bool any_rests = false;
-    for (int place = range.begin; place < range.end; ++place) {
-      const std::uint32_t i = scratch.awake_bodies[static_cast<std::size_t>(place)];
-      if (!takes_part(i)) continue;
-      const bool rests = rests_long(context, state.bodies[i]);
-      restless[i] = rests ? 0 : 1;
-      any_rests = any_rests || rests;
-    }
-    if (any_rests) resting.add(1);
+    const std::span<const std::uint32_t> slots(scratch.awake_bodies.data() + range.begin,
+                                               scratch.awake_bodies.data() + range.end);
+    if (any_rests(context, slots, state.bodies.data(), restless.data())) resting.add(1);
   });
   if (resting.sum() == 0 || !(context.tuning.sleep_s > 0.0f)) return;
   join_resting(state, scratch);

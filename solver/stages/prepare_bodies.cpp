@@ -60,20 +60,24 @@ template <int D>
 static void rest_all(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   Motion<D> resting{};
   resting.delta_rotation = identity_rotation<D>();
-  const auto rest = [&](std::size_t slot) {
+  const std::size_t before = scratch.motions.size();
+  const std::size_t count = state.bodies.size() + 1;
+  for (const std::uint32_t slot : scratch.met) {
     scratch.motions[slot] = resting;
     scratch.masses[slot] = {};
     scratch.inertia_turned[slot] = 0;
-  };
-  const std::size_t before = scratch.motions.size();
-  const std::size_t count = state.bodies.size() + 1;
-  for (const std::uint32_t slot : scratch.met) rest(slot);
+  }
   scratch.motions.resize(count, resting);
   scratch.masses.resize(count, BodyMass<D>{});
   scratch.inertia_turned.resize(count, 0);
   if (!scratch.met_many) return;
   workers.parallel_for(static_cast<int>(std::min(before, count)), kLookGrain, [&](Range range) {
-    for (int slot = range.begin; slot < range.end; ++slot) rest(static_cast<std::size_t>(slot));
+    const auto fill = [&](auto& of_bodies, const auto& value) {
+      std::fill(of_bodies.begin() + range.begin, of_bodies.begin() + range.end, value);
+    };
+    fill(scratch.motions, resting);
+    fill(scratch.masses, BodyMass<D>{});
+    fill(scratch.inertia_turned, std::uint8_t{0});
   });
 }
 
