@@ -16,8 +16,7 @@ static constexpr int kProductsPerPair = 128;
 static constexpr int kProductsPerPairAndTick = 960;
 /// How often a loaded island is factored in a tick at the most, for each substep. What stands takes
 /// one, a bridge under a blow one and a quarter. A heap that is just coming down, whose contacts
-/// come and go from pass to pass, took four, and five times as long as once it lies; with half as
-/// many it lies as it did.
+/// come and go from pass to pass, took four, and five times as long as once it lies.
 static constexpr int kFactorsPerSubstep = 2;
 
 /// Pairs in each body of an island that is thin, and beyond them: so it costs little to factor. A
