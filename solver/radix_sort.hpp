@@ -2,7 +2,6 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <utility>
 #include <vector>
 
 namespace cycloid::solver {
@@ -10,6 +9,7 @@ namespace cycloid::solver {
 /// Below so many, comparing takes less time than counting.
 inline constexpr std::size_t kRadixSortMin = 256;
 
+/// Of a digit: 2048 counters lie in the nearest cache.
 inline constexpr int kRadixSortBits = 11;
 
 /// One pass of a radix sort: `to` has the things by one digit of their numbers, those with the same

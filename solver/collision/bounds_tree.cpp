@@ -38,10 +38,12 @@ static std::uint32_t morton_code(const Bounds<D>& box, const Bounds<D>& world) {
   return code;
 }
 
-/// By Morton code, and by id where two codes are the same: a crowd in one cell.
+/// By Morton code, and by id where two codes are the same: a crowd in one cell. Keys are integers
+/// that no two leaves share, so there is one order of them, whatever a library's sort does with
+/// equals, and whether it counts or compares.
 template <int D>
 void BoundsTree<D>::sort_keys() {
-  // Total order: ids are unique.
+  // Total order: the whole key, whose low half is the id, and ids are unique.
   const auto is_before = [](const Key& a, const Key& b) { return a.code < b.code; };
   if (keys_.size() < kRadixSortMin) return std::sort(keys_.begin(), keys_.end(), is_before);
   const auto place_of = [](const Key& key) { return static_cast<std::uint32_t>(key.code >> 32); };
@@ -50,7 +52,7 @@ void BoundsTree<D>::sort_keys() {
   for (auto first = keys_.begin(); first != keys_.end();) {
     auto last = first + 1;
     while (last != keys_.end() && place_of(*last) == place_of(*first)) ++last;
-    // Total order: the same.
+    // Total order: the same; of these the high halves are equal, so it is that of the ids.
     if (last - first > 1) std::sort(first, last, is_before);
     first = last;
   }

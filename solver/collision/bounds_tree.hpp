@@ -22,7 +22,7 @@ class BoundsTree {
     std::uint32_t id;
   };
 
-  /// @pre ids are unique.
+  /// @pre ids are unique: of those that build one each is the slot of a shape, listed once.
   void build(std::vector<Leaf>& leaves);
 
   int size() const { return static_cast<int>(leaves_.size()); }

@@ -148,7 +148,7 @@ Statistics count_work(const WorldState<D>& state, Workers& workers, const StepSc
 inline constexpr int kBodyGrain = 256;
 inline constexpr int kBlockGrain = 8;
 inline constexpr int kJointGrain = 32;
-/// Of contacts or pairs of which little is asked, so many.
+/// Of what is only looked at, copied or cleared, so many.
 inline constexpr int kLookGrain = 1024;
 
 /// Runs `run(range)` for ranges of every colour in order, those of one colour in parallel, and for
