@@ -22,8 +22,8 @@ bool encode_exact_delta(std::span<const std::byte> baseline, std::span<const std
 /// The encoding that the delta was made of, to the bit.
 ///
 /// Whatever the bytes, allocates at most `bytes_max` (twice, for a moment) and works no longer than
-/// for a state of that size. A delta that is damaged, or was made against another baseline, is
-/// refused but for one in 2^32, which StateDelta::digest refuses.
+/// for a state of that size. A delta that is damaged so that it says another state, or was made
+/// against another baseline, is refused but for one in 2^32, which StateDelta::digest refuses.
 /// @returns nothing where the delta or the baseline is refused, or the state would be larger than
 ///     bytes_max.
 std::optional<std::vector<std::byte>> decode_exact_delta(std::span<const std::byte> baseline,
