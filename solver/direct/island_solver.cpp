@@ -4,10 +4,15 @@
 
 namespace cycloid::solver {
 
-/// Solves more after which what would pull or slide is let go, before the last is taken.
-static constexpr int kPasses = 4;
-/// Times that a solve is tried whose step fell short, each from where the last one led.
-static constexpr int kRounds = 3;
+/// How long a solve looks for what holds.
+struct Effort {
+  int passes;  ///< Solves more after which what would pull or slide is let go.
+  int rounds;  ///< Times that it is tried while its step falls short, from where the last one led.
+};
+static constexpr Effort kThorough{4, 3};
+/// Where soft sweeps can go on from what it leaves. A heap that comes down, whose contacts come and
+/// go, lies no deeper for more; joints, which sweeps do not close, would part.
+static constexpr Effort kBrief{1, 1};
 /// A step this near to the whole is one.
 static constexpr Wide kWholeStep = 0.999;
 
@@ -94,6 +99,12 @@ void IslandSolver<D>::keep_of_guess(const Island& island, Wide share) {
       of.impulse = share * of.impulse;
     });
   }
+}
+
+template <int D>
+static Effort effort_of(const IslandSolver<D>& solver,
+                        const typename IslandSolver<D>::Island& island) {
+  return solver.only_thin && island.joint_count == 0 ? kBrief : kThorough;
 }
 
 template <int D>
@@ -275,8 +286,9 @@ template <int D>
 void IslandSolver<D>::solve_round(Island& island, std::span<const BodyMass<D>> masses,
                                   std::span<const Motion<D>> motions, bool is_first_round) {
   const Range inner{island.steps.begin, island.contact_steps.begin};
+  const int passes = effort_of(*this, island).passes;
   choose(island);
-  for (int pass = 0; pass <= kPasses; ++pass) {
+  for (int pass = 0; pass <= passes; ++pass) {
     const bool is_first = is_first_round && pass == 0;
     if (is_first)
       assemble_joints(island, masses);
@@ -292,7 +304,7 @@ void IslandSolver<D>::solve_round(Island& island, std::span<const BodyMass<D>> m
       solve_contacts(island);
     }
     count_factor(is_first ? island.products : island.contact_products, island);
-    if (let_go(island) && pass < kPasses) continue;
+    if (let_go(island) && pass < passes) continue;
     if (!solves_both) matrix.solve_upper(inner, solution_);
     return answer_joints(island);
   }
@@ -308,8 +320,9 @@ Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masse
   const Wide share = begin(island, masses);
   foresee_turns(island, motions, step.h);
   if (share < 1.0) keep_of_guess(island, share);
+  const int rounds = effort_of(*this, island).rounds;
   Wide taken = 0.0;
-  for (int round = 0; round < kRounds && taken < kWholeStep; ++round) {
+  for (int round = 0; round < rounds && taken < kWholeStep; ++round) {
     if (round > 0 && island.products_left <= 0) break;
     solve_round(island, masses, motions, round == 0);
     taken = take(island, masses);

@@ -14,11 +14,6 @@ static constexpr int kProductsPerPair = 128;
 /// The same, of all that it is factored in a tick: then it is left to the sweeps until the next. So
 /// what is large may be solved when it is disturbed, and not in all rounds of every substep.
 static constexpr int kProductsPerPairAndTick = 960;
-/// How often a loaded island is factored in a tick at the most, for each substep. What stands takes
-/// one, a bridge under a blow one and a quarter. A heap that is just coming down, whose contacts
-/// come and go from pass to pass, took four at the mean and fifteen at worst, and with two it lay
-/// deeper afterwards.
-static constexpr int kFactorsPerSubstep = 4;
 
 /// Pairs in each body of an island that is thin, and beyond them: so it costs little to factor. A
 /// stack, a bridge and an arch have as many pairs as bodies, heaps and nets twice as many.
@@ -205,25 +200,15 @@ static void plan_wanted(StepScratch<D>& scratch) {
   list_groups(scratch);
 }
 
-/// Block products that factoring an island may take in this tick.
-template <int D>
-static std::int64_t products_of_tick(const Tuning& tuning,
-                                     const typename IslandSolver<D>::Island& island) {
-  const std::int64_t of_pairs = std::int64_t{kProductsPerPairAndTick} * island.pairs;
-  if (tuning.contact_block != ContactBlockRows::kLoadedIsland) return of_pairs;
-  const std::int64_t factors = std::int64_t{kFactorsPerSubstep} * tuning.substeps;
-  return std::min(of_pairs, factors * std::max(island.products, 1));  // One body takes none.
-}
-
 /// What is each island's own in this tick: whether it is solved, its greatest mass and inertia, and
 /// how much it may cost. @returns whether any is solved or weighed.
 template <int D>
-static bool begin_islands(const Tuning& tuning, StepScratch<D>& scratch) {
+static bool begin_islands(StepScratch<D>& scratch) {
   bool any = false;
   for (auto& island : scratch.islands_solved.islands) {
     island.taken = island.wanted && island.solvable;
     island.weighed = island.wanted && !island.solvable && may_be_weighed<D>(island);
-    island.products_left = products_of_tick<D>(tuning, island);
+    island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
     island.swept = island.stirred = island.corrects = false;
     if (!island.taken && !island.weighed) continue;
     find_heaviest(scratch, island);
@@ -260,7 +245,7 @@ void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<
   solver.acts = want_islands(solver);
   if (!solver.acts) return;
   plan_wanted(scratch);
-  solver.acts = begin_islands(context.tuning, scratch);
+  solver.acts = begin_islands(scratch);
 }
 
 template <int D, int W>

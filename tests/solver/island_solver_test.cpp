@@ -52,21 +52,40 @@ TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
   EXPECT_NEAR(body.solver.rows[0].impulse + body.solver.rows[2].impulse, 1.0, 1.0e-3);
 }
 
+/// One that falls and slides, of which no step is whole.
+struct BodyThatSlides : BodyOnGround {
+  BodyThatSlides() {
+    for (const std::size_t normal : {0, 2}) solver.rows[normal].missing = -1.0;
+    for (const std::size_t tangent : {1, 3}) {
+      solver.rows[tangent].missing = 3.0;
+      solver.rows[tangent].impulse = 2.0;
+    }
+  }
+};
+
 TEST(IslandSolver, TriesNoFurtherOnceItHasCostEnough) {
   const auto factors = [](std::int64_t products_left) {
-    BodyOnGround body;
+    BodyThatSlides body;
     body.island.products_left = products_left;
-    for (const std::size_t normal : {0, 2}) body.solver.rows[normal].missing = -1.0;
-    for (const std::size_t tangent : {1, 3}) {
-      body.solver.rows[tangent].missing = 3.0;
-      body.solver.rows[tangent].impulse = 2.0;
-    }
     EXPECT_EQ(body.solve(), Solved::kPartly);
     EXPECT_EQ(body.island.products_left,
               products_left - static_cast<std::int64_t>(body.solver.work.factors));
     return body.solver.work.factors;
   };
   EXPECT_GT(factors(1000), factors(1));
+}
+
+TEST(IslandSolver, LooksForWhatHoldsBrieflyWhereSweepsGoOnFromIt) {
+  const auto factors = [](bool only_thin, int joints) {
+    BodyThatSlides body;
+    body.solver.only_thin = only_thin;
+    body.island.joint_count = joints;
+    EXPECT_EQ(body.solve(), Solved::kPartly);
+    return body.solver.work.factors;
+  };
+  EXPECT_EQ(factors(true, 0), 2u);
+  EXPECT_GT(factors(true, 1), 2u) << "a joint cannot wait for the sweeps";
+  EXPECT_GT(factors(false, 0), 2u) << "soft-islands solves to the end";
 }
 
 TEST(IslandSolver, LeavesForSweepsWhatSlidesPullsOrApproaches) {
