@@ -101,6 +101,7 @@ void IslandSolver<D>::keep_of_guess(const Island& island, Wide share) {
   }
 }
 
+/// Loaded islands are shared with soft sweeps, but for their joints; others are solved to the end.
 template <int D>
 static Effort effort_of(const IslandSolver<D>& solver,
                         const typename IslandSolver<D>::Island& island) {
