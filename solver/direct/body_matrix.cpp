@@ -13,7 +13,7 @@ void BodyMatrix<D>::begin(int nodes) {
   eliminated_.assign(count, 0);
   is_last_.assign(count, 0);
   links_.clear();
-  steps_.assign(1, Step{-1, 0, 0});
+  steps_.assign(1, EliminationStep{-1, 0, 0});
   entries_.clear();
   targets_.clear();
   diagonal_.resize(count);
@@ -101,21 +101,20 @@ int BodyMatrix<D>::eliminate(int node) {
   }
   // Total order: a node has one link to each neighbour.
   std::sort(entries_.begin() + static_cast<std::ptrdiff_t>(begin), entries_.end(),
-            [](const Entry& a, const Entry& b) { return a.node < b.node; });
+            [](const ColumnEntry& a, const ColumnEntry& b) { return a.node < b.node; });
   for (std::size_t i = begin; i < entries_.size(); ++i) {
     --degree_[static_cast<std::size_t>(entries_[i].node)];
     for (std::size_t j = begin; j < i; ++j)
       targets_.push_back(join(entries_[i].node, entries_[j].node));
   }
-  for (std::size_t i = begin; i < entries_.size(); ++i) {
-    wait(entries_[i].node);
-  }
+  for (std::size_t i = begin; i < entries_.size(); ++i) wait(entries_[i].node);
+  if (column_.size() < entries_.size() - begin) column_.resize(entries_.size() - begin);
   return products_of(static_cast<int>(entries_.size() - begin));
 }
 
 template <int D>
 bool BodyMatrix<D>::analyse(Range nodes, int products_max, Range& steps) {
-  const Step first = steps_.back();
+  const EliminationStep first = steps_.back();
   const auto begin = static_cast<int>(steps_.size()) - 1;
   heap_.clear();
   for (int node = nodes.begin; node < nodes.end; ++node) wait(node);
@@ -189,7 +188,7 @@ void BodyMatrix<D>::copy_blocks(Range steps, const std::vector<Block>& from_diag
                                 std::vector<Block>& to_diagonal,
                                 std::vector<Block>& to_beside) const {
   for (int s = steps.begin; s < steps.end; ++s) {
-    const Step& step = steps_[static_cast<std::size_t>(s)];
+    const EliminationStep& step = steps_[static_cast<std::size_t>(s)];
     const auto node = static_cast<std::size_t>(step.node);
     to_diagonal[node] = from_diagonal[node];
     for (int e = step.entries; e < steps_[static_cast<std::size_t>(s) + 1].entries; ++e) {
@@ -199,43 +198,6 @@ void BodyMatrix<D>::copy_blocks(Range steps, const std::vector<Block>& from_diag
   }
 }
 
-/// A = L D L^T. @pre positive definite, as a body's own mass makes it; what rounding takes of a
-/// pivot beyond that is given back.
-template <int N>
-static void factor_pivot(const SquareBlock<N>& block, Pivot<N>& pivot) {
-  for (int i = 0; i < N; ++i) {
-    Wide row[N];
-    Wide left = block.m[i][i];
-    for (int j = 0; j < i; ++j) {
-      row[j] = block.m[i][j];
-      for (int k = 0; k < j; ++k) row[j] -= row[k] * pivot.lower[j][k];
-      pivot.lower[i][j] = row[j] * pivot.inverse[j];
-      left -= row[j] * pivot.lower[i][j];
-    }
-    const Wide least = 1.0e-14 * block.m[i][i];
-    pivot.inverse[i] = 1.0 / (left > least ? left : least);
-  }
-}
-
-/// Replaces b by b L^-T, and sets c = b D^-1 of that. Not by an inverse of the pivot, whose errors
-/// would hide the masses behind a stiff one.
-template <int N>
-static void divide(const Pivot<N>& pivot, SquareBlock<N>& b, SquareBlock<N>& c) {
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j < N; ++j) {
-      for (int k = 0; k < j; ++k) b.m[i][j] -= b.m[i][k] * pivot.lower[j][k];
-      c.m[i][j] = b.m[i][j] * pivot.inverse[j];
-    }
-}
-/// b = c L^-1: with what `divide` has made, the block over the pivot.
-template <int N>
-static void divide_by_lower(const Pivot<N>& pivot, const SquareBlock<N>& c, SquareBlock<N>& b) {
-  for (int i = 0; i < N; ++i)
-    for (int j = N; j-- > 0;) {
-      b.m[i][j] = c.m[i][j];
-      for (int k = j + 1; k < N; ++k) b.m[i][j] -= b.m[i][k] * pivot.lower[k][j];
-    }
-}
 /// Replaces v by what the pivot answers to it.
 template <int N, class T>
 static void divide(const Pivot<N>& pivot, Vec<N, T>& v) {
@@ -247,58 +209,14 @@ static void divide(const Pivot<N>& pivot, Vec<N, T>& v) {
   }
 }
 
-/// c -= a b^T.
-template <int N>
-static void subtract_product(const SquareBlock<N>& a, const SquareBlock<N>& b, SquareBlock<N>& c) {
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j < N; ++j) {
-      Wide sum = a.m[i][0] * b.m[j][0];
-      for (int k = 1; k < N; ++k) sum += a.m[i][k] * b.m[j][k];
-      c.m[i][j] -= sum;
-    }
-}
-
-/// The same of a product that is symmetric, of which only the lower triangle is read.
-template <int N>
-static void subtract_square(const SquareBlock<N>& a, const SquareBlock<N>& b, SquareBlock<N>& c) {
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j <= i; ++j) {
-      Wide sum = a.m[i][0] * b.m[j][0];
-      for (int k = 1; k < N; ++k) sum += a.m[i][k] * b.m[j][k];
-      c.m[i][j] -= sum;
-    }
-}
-template <int N>
-static void transpose(SquareBlock<N>& block) {
-  for (int i = 0; i < N; ++i)
-    for (int j = 0; j < i; ++j) std::swap(block.m[i][j], block.m[j][i]);
-}
-
-template <int D>
-void BodyMatrix<D>::eliminate_numbers(const Step& step, const Step& next) {
-  const Pivot<kFreedoms>& pivot = pivots_[static_cast<std::size_t>(step.node)];
-  const auto count = static_cast<std::size_t>(next.entries - step.entries);
-  if (column_.size() < count) column_.resize(count);
-  std::size_t target = static_cast<std::size_t>(step.targets);
-  for (std::size_t i = 0; i < count; ++i) {
-    const Entry& entry = entries_[static_cast<std::size_t>(step.entries) + i];
-    Block& block = beside(entry.block);
-    if (entry.transposed) transpose(block);
-    divide(pivot, block, column_[i]);
-    for (std::size_t j = 0; j < i; ++j)
-      subtract_product(block, column_[j], beside(targets_[target++]));
-    subtract_square(block, column_[i], diagonal(entry.node));
-    divide_by_lower(pivot, column_[i], block);
-  }
-}
-
 template <int D>
 void BodyMatrix<D>::factor(Range steps) {
-  for (int s = steps.begin; s < steps.end; ++s) {
-    const Step& step = steps_[static_cast<std::size_t>(s)];
-    factor_pivot(diagonal(step.node), pivots_[static_cast<std::size_t>(step.node)]);
-    eliminate_numbers(step, steps_[static_cast<std::size_t>(s) + 1]);
-  }
+  const FactoredBlocks<D> of{steps_.data(),  entries_.data(), targets_.data(), diagonal_.data(),
+                             beside_.data(), pivots_.data(),  column_.data()};
+  if (lanes_ == kAvx2Lanes || lanes_ == kAvx512Lanes)
+    BlockKernels<D, kAvx2Lanes>::factor(steps, of);
+  else
+    BlockKernels<D, 4>::factor(steps, of);
 }
 
 template <int D>
@@ -312,14 +230,14 @@ template <int D>
 template <class T>
 void BodyMatrix<D>::solve_lower(Range steps, ByNode<T>& by_node) const {
   for (int s = steps.begin; s < steps.end; ++s) {
-    const Step& step = steps_[static_cast<std::size_t>(s)];
+    const EliminationStep& step = steps_[static_cast<std::size_t>(s)];
     const Vec<kFreedoms, T>& from = by_node[static_cast<std::size_t>(step.node)];
     for (int e = step.entries; e < steps_[static_cast<std::size_t>(s) + 1].entries; ++e) {
-      const Entry& entry = entries_[static_cast<std::size_t>(e)];
+      const ColumnEntry& entry = entries_[static_cast<std::size_t>(e)];
       const Block& lower = beside_[static_cast<std::size_t>(entry.block)];
       Vec<kFreedoms, T>& to = by_node[static_cast<std::size_t>(entry.node)];
       for (int i = 0; i < kFreedoms; ++i)
-        for (int j = 0; j < kFreedoms; ++j) to[i] -= lower.m[i][j] * from[j];
+        for (int j = 0; j < kFreedoms; ++j) to[i] -= lower.at(i, j) * from[j];
     }
   }
 }
@@ -328,15 +246,15 @@ template <int D>
 template <class T>
 void BodyMatrix<D>::solve_upper(Range steps, ByNode<T>& by_node) const {
   for (int s = steps.end; s-- > steps.begin;) {
-    const Step& step = steps_[static_cast<std::size_t>(s)];
+    const EliminationStep& step = steps_[static_cast<std::size_t>(s)];
     Vec<kFreedoms, T>& to = by_node[static_cast<std::size_t>(step.node)];
     divide(pivots_[static_cast<std::size_t>(step.node)], to);
     for (int e = step.entries; e < steps_[static_cast<std::size_t>(s) + 1].entries; ++e) {
-      const Entry& entry = entries_[static_cast<std::size_t>(e)];
+      const ColumnEntry& entry = entries_[static_cast<std::size_t>(e)];
       const Block& lower = beside_[static_cast<std::size_t>(entry.block)];
       const Vec<kFreedoms, T>& from = by_node[static_cast<std::size_t>(entry.node)];
       for (int i = 0; i < kFreedoms; ++i)
-        for (int j = 0; j < kFreedoms; ++j) to[j] -= lower.m[i][j] * from[i];
+        for (int j = 0; j < kFreedoms; ++j) to[j] -= lower.at(i, j) * from[i];
     }
   }
 }

@@ -3,24 +3,9 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/dim.hpp"
-#include "solver/direct/wide.hpp"
-#include "solver/workers.hpp"
+#include "solver/direct/block_kernels.hpp"
 
 namespace cycloid::solver {
-
-/// What one body's freedoms, or those of a body and its neighbour, do to each other.
-template <int N>
-struct SquareBlock {
-  Wide m[N][N];
-};
-
-/// L D L^T of a node's own block, once nothing is left before it.
-template <int N>
-struct Pivot {
-  Wide lower[N][N];  ///< Strictly below the diagonal.
-  Wide inverse[N];   ///< Of D.
-};
 
 /// A symmetric positive definite matrix of blocks, one row of blocks per body (node), factored as
 /// L D L^T without pivoting: for islands of bodies that hold each other, whatever loops they form.
@@ -40,6 +25,9 @@ class BodyMatrix {
   using VectorPair = Vec<kFreedoms, WidePair>;
   template <class T>
   using ByNode = std::vector<Vec<kFreedoms, T>>;
+
+  /// In lanes of which width `factor` works, see lane_widths.hpp. Changes no bit.
+  void use_lanes(int width) { lanes_ = width; }
 
   /// An empty pattern of this many nodes. Keeps its memory from call to call.
   void begin(int nodes);
@@ -89,18 +77,6 @@ class BodyMatrix {
     int block;
     int next;
   };
-  /// A block of the column of an eliminated node.
-  struct Entry {
-    int node;
-    int block;
-    bool transposed;  ///< Before it is factored: its rows are those of the eliminated node.
-  };
-  struct Step {
-    int node;
-    int entries;  ///< The first one; the next step's are the end.
-    int targets;  ///< The first block that it changes beside the diagonal.
-  };
-
   /// A node in line to be eliminated.
   struct Waiting {
     int rank;   ///< Its degree, behind all others if it was put last.
@@ -120,16 +96,16 @@ class BodyMatrix {
   void copy_blocks(Range steps, const std::vector<Block>& from_diagonal,
                    const std::vector<Block>& from_beside, std::vector<Block>& to_diagonal,
                    std::vector<Block>& to_beside) const;
-  void eliminate_numbers(const Step& step, const Step& next);
 
+  int lanes_ = 4;
   std::vector<int> first_link_;  ///< By node.
   std::vector<int> degree_;
   std::vector<std::uint8_t> eliminated_;
   std::vector<std::uint8_t> is_last_;
   std::vector<Link> links_;
-  std::vector<Waiting> heap_;  ///< None before what it halves to.
-  std::vector<Step> steps_;    ///< One more than there are.
-  std::vector<Entry> entries_;
+  std::vector<Waiting> heap_;           ///< None before what it halves to.
+  std::vector<EliminationStep> steps_;  ///< One more than there are.
+  std::vector<ColumnEntry> entries_;
   std::vector<int> targets_;
   std::vector<Block> diagonal_;
   std::vector<Pivot<kFreedoms>> pivots_;

@@ -8,10 +8,10 @@ namespace cycloid::solver {
 template <int D>
 static void set_mass(const BodyMass<D>& mass, SquareBlock<Dim<D>::kFreedoms>& block) {
   constexpr int kSpin = Dim<D>::kSpin;
-  for (int i = 0; i < D; ++i) block.m[i][i] = 1.0 / static_cast<Wide>(mass.inverse_mass);
+  for (int i = 0; i < D; ++i) block.at(i, i) = 1.0 / static_cast<Wide>(mass.inverse_mass);
   const float* inverse = mass.inverse_inertia.m;
   if constexpr (kSpin == 1) {
-    block.m[D][D] = inverse[0] > 0.0f ? 1.0 / static_cast<Wide>(inverse[0]) : 1.0;
+    block.at(D, D) = inverse[0] > 0.0f ? 1.0 / static_cast<Wide>(inverse[0]) : 1.0;
   } else {
     Wide m[9];
     for (int i = 0; i < 9; ++i) m[i] = static_cast<Wide>(inverse[i]);
@@ -23,10 +23,10 @@ static void set_mass(const BodyMass<D>& mass, SquareBlock<Dim<D>::kFreedoms>& bl
     const Wide determinant = m[0] * cofactor[0][0] + m[1] * cofactor[0][1] + m[2] * cofactor[0][2];
     for (int i = 0; i < 3; ++i)
       for (int j = 0; j < 3; ++j)
-        block.m[D + i][D + j] = determinant > 0.0
-                                    ? 0.5 * (cofactor[i][j] + cofactor[j][i]) / determinant
-                                : i == j ? 1.0
-                                         : 0.0;
+        block.at(D + i, D + j) = determinant > 0.0
+                                     ? 0.5 * (cofactor[i][j] + cofactor[j][i]) / determinant
+                                 : i == j ? 1.0
+                                          : 0.0;
   }
 }
 
@@ -35,7 +35,7 @@ template <int N>
 static void add_outer(Wide scale, const Wide (&p)[N], const Wide (&q)[N], SquareBlock<N>& block) {
   for (int i = 0; i < N; ++i) {
     const Wide scaled = scale * p[i];
-    for (int j = 0; j < N; ++j) block.m[i][j] += scaled * q[j];
+    for (int j = 0; j < N; ++j) block.at(i, j) += scaled * q[j];
   }
 }
 /// block += scale p p^T, of which only the lower triangle is read.
@@ -43,7 +43,7 @@ template <int N>
 static void add_square(Wide scale, const Wide (&p)[N], SquareBlock<N>& block) {
   for (int i = 0; i < N; ++i) {
     const Wide scaled = scale * p[i];
-    for (int j = 0; j <= i; ++j) block.m[i][j] += scaled * p[j];
+    for (int j = 0; j <= i; ++j) block.at(i, j) += scaled * p[j];
   }
 }
 
@@ -65,12 +65,12 @@ static void add_point_square(Wide scale, const Vec<D, Wide>& p,
                              SquareBlock<Dim<D>::kFreedoms>& block) {
   constexpr int kSpin = Dim<D>::kSpin;
   const Wide square = scale * dot(p, p);
-  for (int i = 0; i < D; ++i) block.m[i][i] += scale;
+  for (int i = 0; i < D; ++i) block.at(i, i) += scale;
   for (int i = 0; i < kSpin; ++i) {
-    for (int j = 0; j < D; ++j) block.m[D + i][j] += scale * cross_column(p, i, j);
-    block.m[D + i][D + i] += square;
+    for (int j = 0; j < D; ++j) block.at(D + i, j) += scale * cross_column(p, i, j);
+    block.at(D + i, D + i) += square;
     if constexpr (kSpin == 3)
-      for (int j = 0; j <= i; ++j) block.m[D + i][D + j] -= scale * p[i] * p[j];
+      for (int j = 0; j <= i; ++j) block.at(D + i, D + j) -= scale * p[i] * p[j];
   }
 }
 
@@ -81,15 +81,15 @@ static void add_point(Wide scale, const Vec<D, Wide>& p, const Vec<D, Wide>& q,
                       SquareBlock<Dim<D>::kFreedoms>& block) {
   constexpr int kSpin = Dim<D>::kSpin;
   const Wide product = scale * dot(p, q);
-  for (int i = 0; i < D; ++i) block.m[i][i] += scale;
+  for (int i = 0; i < D; ++i) block.at(i, i) += scale;
   for (int i = 0; i < kSpin; ++i) {
     for (int j = 0; j < D; ++j) {
-      block.m[D + i][j] += scale * cross_column(p, i, j);
-      block.m[j][D + i] += scale * cross_column(q, i, j);
+      block.at(D + i, j) += scale * cross_column(p, i, j);
+      block.at(j, D + i) += scale * cross_column(q, i, j);
     }
-    block.m[D + i][D + i] += product;
+    block.at(D + i, D + i) += product;
     if constexpr (kSpin == 3)
-      for (int j = 0; j < kSpin; ++j) block.m[D + i][D + j] -= scale * q[i] * p[j];
+      for (int j = 0; j < kSpin; ++j) block.at(D + i, D + j) -= scale * q[i] * p[j];
   }
 }
 
@@ -112,7 +112,7 @@ void IslandSolver<D>::assemble_joints(const Island& island, std::span<const Body
     const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
     for (int i = 0; i < Dim<D>::kSpin; ++i)
       for (int j = 0; j < Dim<D>::kSpin; ++j)
-        matrix.diagonal(tension.node).m[D + i][D + j] +=
+        matrix.diagonal(tension.node).at(D + i, D + j) +=
             static_cast<Wide>(tension.stiffness) * across(tension.along, i, j);
   }
   for (int g = island.joints.begin; g < island.joints.end; ++g) {

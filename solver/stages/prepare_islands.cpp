@@ -1,3 +1,4 @@
+#include "solver/lane_widths.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -90,6 +91,7 @@ void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratc
   solver.work = {};
   find_loaded<D, W>(context, workers, scratch);
   if (!solver.acts) return;
+  solver.matrix.use_lanes(widest_lanes(context.lanes));
   group_islands<D, W>(context, workers, scratch);
   if (!solver.acts) return;
   find_swept<D, W>(scratch);

@@ -57,15 +57,15 @@ struct SpringSystem {
   void assemble() {
     matrix.clear(steps);
     for (int n = 0; n < nodes; ++n)
-      for (int i = 0; i < kFreedoms; ++i) matrix.diagonal(n).m[i][i] += 1.0 + n;
+      for (int i = 0; i < kFreedoms; ++i) matrix.diagonal(n).at(i, i) += 1.0 + n;
     for (std::size_t p = 0; p < pairs.size(); ++p) {
       const bool a_is_row = pairs[p].a > pairs[p].b;
       auto& beside = matrix.beside(matrix.join(pairs[p].a, pairs[p].b));
       for (int i = 0; i < kFreedoms; ++i)
         for (int j = 0; j < kFreedoms; ++j) {
-          matrix.diagonal(pairs[p].a).m[i][j] += stiffness[p] * a[p][i] * a[p][j];
-          matrix.diagonal(pairs[p].b).m[i][j] += stiffness[p] * b[p][i] * b[p][j];
-          beside.m[i][j] += stiffness[p] * (a_is_row ? a[p][i] * b[p][j] : b[p][i] * a[p][j]);
+          matrix.diagonal(pairs[p].a).at(i, j) += stiffness[p] * a[p][i] * a[p][j];
+          matrix.diagonal(pairs[p].b).at(i, j) += stiffness[p] * b[p][i] * b[p][j];
+          beside.at(i, j) += stiffness[p] * (a_is_row ? a[p][i] * b[p][j] : b[p][i] * a[p][j]);
         }
     }
   }
@@ -212,7 +212,7 @@ TYPED_TEST(BodyMatrixTest, WhatWasPutLastIsSolvedAgainWithoutTheRest) {
   system.matrix.restore(last);
   for (int i = 0; i < Dim<D>::kFreedoms; ++i)
     for (int j = 0; j < Dim<D>::kFreedoms; ++j)
-      system.matrix.diagonal(12).m[i][j] += 1000.0 * spring[i] * spring[j];
+      system.matrix.diagonal(12).at(i, j) += 1000.0 * spring[i] * spring[j];
   system.matrix.factor(last);
   system.ground_node = 12;
   system.ground = spring;

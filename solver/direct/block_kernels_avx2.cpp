@@ -1,0 +1,10 @@
+// Compiled with -mavx2 where CYCLOID_AVX2 is defined; called only where has_avx2_kernels() says so.
+// Every name that this file defines holds the width 264: see constraints/contact_kernels_avx2.cpp.
+#include "solver/direct/block_lanes.hpp"
+
+namespace cycloid::solver {
+
+template struct BlockKernels<2, kAvx2Lanes>;
+template struct BlockKernels<3, kAvx2Lanes>;
+
+}  // namespace cycloid::solver
