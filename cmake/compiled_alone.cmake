@@ -1,16 +1,11 @@
 # Files that are never compiled together with others, by the matrix or by `./dev sanitize --quick`.
 
-# Compiled with flags of their own, which do not fit what was parsed without them.
-set(WITH_FLAGS_OF_THEIR_OWN solver/bodies/body_kernels_avx2.cpp
-  solver/bodies/body_kernels_avx512.cpp solver/collision/bounds_kernels_avx2.cpp
-  solver/collision/bounds_kernels_avx512.cpp solver/collision/few_cornered_avx2.cpp
-  solver/collision/few_cornered_avx512.cpp solver/collision/solid_kernels_avx2.cpp
-  solver/collision/solid_kernels_avx512.cpp solver/constraints/contact_kernels.cpp
-  solver/constraints/contact_kernels_avx2.cpp solver/constraints/contact_kernels_avx512.cpp
-  solver/constraints/pin_kernels.cpp solver/constraints/pin_kernels_avx2.cpp
-  solver/constraints/pin_kernels_avx512.cpp
-  solver/tracing/digest_kernels_avx2.cpp solver/tracing/digest_kernels_avx512.cpp
-  solver/instruction_sets.cpp)
+# Compiled with flags of their own, which do not fit what was parsed without them: the kernels of an
+# instruction set, by their names, and these.
+file(GLOB KERNELS_OF_A_SET CONFIGURE_DEPENDS RELATIVE ${CMAKE_SOURCE_DIR}
+  ${CMAKE_SOURCE_DIR}/solver/*/*_avx2.cpp ${CMAKE_SOURCE_DIR}/solver/*/*_avx512.cpp)
+set(WITH_FLAGS_OF_THEIR_OWN ${KERNELS_OF_A_SET} solver/constraints/contact_kernels.cpp
+  solver/constraints/pin_kernels.cpp solver/instruction_sets.cpp)
 
 # Clang takes no instantiation of a class behind those of its members in other files; the others have
 # names of their own for what another file of the folder means something else by, or are known by
