@@ -47,7 +47,7 @@ struct TriangleOfBlocks {
                  pivots.data(), column.data()});
   }
 
-  /// The same matrix in one piece, number after number, with blocks of L as they are to come out.
+  /// What the kernels have to come to: each number by itself, in the order of the formulas.
   void factor_by_number() {
     for (int node = 0; node < 3; ++node) {
       factor_own(diagonal[static_cast<std::size_t>(node)], pivots[static_cast<std::size_t>(node)]);
