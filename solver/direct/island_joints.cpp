@@ -43,8 +43,7 @@ static Vec<Dim<D>::kSpin, Wide> spin_before(const Motion<D>& motion,
 template <int D>
 void IslandSolver<D>::foresee_turns(const Island& island, std::span<const Motion<D>> motions,
                                     Wide h) {
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+  for (const IslandRows<D>& group : joints_of(island)) {
     Vec<D, Wide> parting = Vec<D, Wide>::zero();
     const auto add = [&](int node, const Vec<D, Wide>& arm, Wide scale) {
       if (node < 0) return;
@@ -55,7 +54,7 @@ void IslandSolver<D>::foresee_turns(const Island& island, std::span<const Motion
     };
     add(group.node_a, group.arm_a, -0.5 * h);
     add(group.node_b, group.arm_b, 0.5 * h);
-    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+    IslandRow<D>* row = first_row(group);
     for (int r = 0; r < group.points; ++r) row[r].missing += parting[r];
     for (int r = group.points; r < group.count; ++r)
       for (int i = 0; i < D; ++i) row[r].missing += row[r].b[i] * parting[i];
@@ -67,9 +66,8 @@ void IslandSolver<D>::foresee_turns(const Island& island, std::span<const Motion
 template <int D>
 Wide IslandSolver<D>::closing_speed(Island& island) const {
   Wide greatest_square = 0.0;
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : joints_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     Wide square = 0.0;
     for (int r = 0; r < group.count; ++r) square += row[r].closing * row[r].closing;
     greatest_square = std::max(greatest_square, square);
@@ -89,11 +87,11 @@ void IslandSolver<D>::solve_and_close(const Island& island, std::span<const Moti
                                       Wide fastest) {
   load_both(island, motions);
   matrix.solve_lower({island.steps.begin, island.contact_steps.begin}, both_);
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    kept_both_[static_cast<std::size_t>(n)] = both_[static_cast<std::size_t>(n)];
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  const auto begin = both_.begin();
+  std::copy(begin + island.nodes.begin, begin + island.nodes.end,
+            kept_both_.begin() + island.nodes.begin);
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     push_rows<D, WidePair>(group, row, both_, [](const IslandRow<D>& of) {
       return WidePair(of.holds ? -of.stiffness * of.missing : 0.0, 0.0);
     });
@@ -111,29 +109,21 @@ void IslandSolver<D>::solve_and_close(const Island& island, std::span<const Moti
       kept_[node][i] = kept_both_[node][i].raw[0] + share * kept_both_[node][i].raw[1];
     }
   }
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      row.missing += share * row.closing;
-    }
-  }
+  for (const IslandRows<D>& group : joints_of(island))
+    for (IslandRow<D>& row : rows_of(group)) row.missing += share * row.closing;
 }
 
 /// -J^T W missing of joints and tensions, and -J^T W closing beside it.
 template <int D>
 void IslandSolver<D>::load_both(const Island& island, std::span<const Motion<D>> motions) {
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    both_[static_cast<std::size_t>(n)] = Vec<kFreedoms, WidePair>::zero();
-  for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
-    const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
+  set_zero(island, both_);
+  for (const IslandTension<D>& tension : tensions_of(island)) {
     const Spin<D, Wide> pull = pull_of(tension, motions);
     for (int i = 0; i < Dim<D>::kSpin; ++i)
       both_[static_cast<std::size_t>(tension.node)][D + i] -= WidePair(pull[i], 0.0);
   }
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : joints_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     push_rows<D, WidePair>(group, row, both_, [](const IslandRow<D>& of) {
       return -of.stiffness * WidePair(of.missing, of.closing);
     });

@@ -30,9 +30,8 @@ static bool would_stick(Wide friction, const IslandRow<D>* normal) {
 
 template <int D>
 bool IslandSolver<D>::leaves_for_sweeps(const Island& island, Wide tolerance) const {
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     if (row[0].missing < -tolerance) return true;
     if (row[0].impulse == 0.0) continue;
     if (std::min(row[0].missing, row[0].impulse / row[0].mass) > tolerance) return true;
@@ -45,11 +44,9 @@ bool IslandSolver<D>::leaves_for_sweeps(const Island& island, Wide tolerance) co
 /// What all impulses of an island come to on each body, into `momentum_`.
 template <int D>
 void IslandSolver<D>::add_up_impulses(const Island& island) {
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    momentum_[static_cast<std::size_t>(n)] = Vector::zero();
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  set_zero(island, momentum_);
+  for (const IslandRows<D>& group : groups_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     push_rows<D, Wide>(group, row, momentum_, [](const IslandRow<D>& of) { return of.impulse; });
   }
 }
@@ -63,13 +60,8 @@ Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyM
   constexpr Wide kMuch = 0.1;  // Less than a tenth off is as good as it gets between substeps.
   add_up_impulses(island);
   Wide work_done = 0.0;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
-      work_done += row.impulse * row.missing;
-    }
-  }
+  for (const IslandRows<D>& group : groups_of(island))
+    for (const IslandRow<D>& row : rows_of(group)) work_done += row.impulse * row.missing;
   Wide energy = 0.0;
   for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
     Vector& momentum = momentum_[static_cast<std::size_t>(n)];
@@ -91,9 +83,8 @@ void IslandSolver<D>::keep_of_guess(const Island& island, Wide share) {
       change[static_cast<std::size_t>(n)][i] += velocity[i];
     }
   }
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : groups_of(island)) {
+    IslandRow<D>* row = first_row(group);
     for_each_speed<D>(group, row, momentum_, [&](IslandRow<D>& of, Wide speed) {
       of.missing += speed;
       of.impulse = share * of.impulse;
@@ -110,8 +101,7 @@ static Effort effort_of(const IslandSolver<D>& solver,
 
 template <int D>
 Wide IslandSolver<D>::begin(const Island& island, std::span<const BodyMass<D>> masses) {
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    change[static_cast<std::size_t>(n)] = Vector::zero();
+  set_zero(island, change);
   momentum_.resize(body_of.size());
   guessed_.resize(body_of.size());
   return worth_of_guess(island, masses);
@@ -125,9 +115,8 @@ void IslandSolver<D>::weaken_guess(const Island& island, std::span<const BodyMas
 /// Which rows of contacts are equalities, by the natural map.
 template <int D>
 void IslandSolver<D>::choose(const Island& island) {
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    IslandRow<D>* row = first_row(group);
     row[0].holds = row[0].impulse - row[0].mass * row[0].missing > 0.0;
     const bool rubs = row[0].holds && group.friction > 0.0;
     // What has not pushed yet has no bound to compare with: it may well stick.
@@ -141,9 +130,8 @@ template <int D>
 bool IslandSolver<D>::let_go(const Island& island) {
   constexpr Wide kSlack = 1.0001;
   bool any = false;
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    IslandRow<D>* row = first_row(group);
     for_each_speed<D>(group, row, solution_, [](IslandRow<D>& of, Wide speed) {
       of.answer = speed;
       of.change = of.holds ? -of.stiffness * (of.missing + of.answer) : 0.0;
@@ -164,9 +152,8 @@ bool IslandSolver<D>::let_go(const Island& island) {
 /// What comes of the solve for the joints.
 template <int D>
 void IslandSolver<D>::answer_joints(const Island& island) {
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : joints_of(island)) {
+    IslandRow<D>* row = first_row(group);
     for_each_speed<D>(group, row, solution_, [](IslandRow<D>& of, Wide speed) {
       of.answer = speed;
       of.change = -of.stiffness * (of.missing + of.answer);
@@ -185,9 +172,8 @@ Wide IslandSolver<D>::share_of_correction(const Island& island, Wide speed) cons
       of_node = std::max(of_node, magnitude(correction[static_cast<std::size_t>(n)][i]));
     most = std::max(most, of_node);
   }
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     for_each_speed<D>(group, row, correction, [&](const IslandRow<D>&, Wide corrected) {
       most = std::max(most, magnitude(corrected));
     });
@@ -201,11 +187,9 @@ Wide IslandSolver<D>::share_of_correction(const Island& island, Wide speed) cons
 template <int D>
 void IslandSolver<D>::correct_positions(Island& island, Wide push_speed_max) {
   island.corrects = false;
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    correction[static_cast<std::size_t>(n)] = Vector::zero();
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {  // Joints close by velocities.
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  set_zero(island, correction);
+  for (const IslandRows<D>& group : contacts_of(island)) {  // Joints close by velocities.
+    const IslandRow<D>* row = first_row(group);
     if (!row->holds || row->closing == 0.0) continue;
     island.corrects = true;
     push_row<D>(group, row, 0, -row->stiffness * row->closing, correction);
@@ -234,21 +218,17 @@ void IslandSolver<D>::relieve_stress(const Island& island, std::span<const BodyM
     load += speed / static_cast<Wide>(masses[body_of[node]].inverse_mass);
   }
   Wide most = 0.0;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
+  for (const IslandRows<D>& group : groups_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     const int forces = std::min(group.count, D);  // Rows after those may be of torques.
     Wide of_group = 0.0;
-    for (int r = group.first; r < group.first + forces; ++r)
-      of_group = std::max(of_group, magnitude(rows[static_cast<std::size_t>(r)].impulse));
+    for (int r = 0; r < forces; ++r) of_group = std::max(of_group, magnitude(row[r].impulse));
     most = std::max(most, of_group);
   }
   if (most <= kStress * load) return;
   const Wide share = kStress * load / most;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r)
-      rows[static_cast<std::size_t>(r)].impulse *= share;
-  }
+  for (const IslandRows<D>& group : groups_of(island))
+    for (IslandRow<D>& row : rows_of(group)) row.impulse *= share;
 }
 
 /// Joints that miss what they hold, after a solve, contradict each other or the contacts; their
@@ -259,19 +239,15 @@ void IslandSolver<D>::forget_conflict(const Island& island) {
   // a blow a tenth, for that is what its impulses change by: with 0.1 a bridge is let go then.
   constexpr Wide kConflict = 0.5;
   Wide most = 0.0;
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : joints_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     Wide of_group = 0.0;
     for (int r = 0; r < group.count; ++r) of_group = std::max(of_group, magnitude(row[r].missing));
     most = std::max(most, of_group);
   }
   if (!(most > kConflict)) return;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r)
-      rows[static_cast<std::size_t>(r)].impulse = 0.0;
-  }
+  for (const IslandRows<D>& group : groups_of(island))
+    for (IslandRow<D>& row : rows_of(group)) row.impulse = 0.0;
 }
 
 template <int D>

@@ -1,5 +1,9 @@
 #pragma once
 
+#include <algorithm>
+#include <span>
+#include <vector>
+
 #include "solver/direct/body_matrix.hpp"
 #include "solver/motion.hpp"
 
@@ -191,6 +195,27 @@ class IslandSolver {
     return at >= 0 && islands[static_cast<std::size_t>(at)].numbered;
   }
 
+  /// The groups of an island: of its contacts, of its joints, of both; and the rows of a group.
+  std::span<const IslandRows<D>> contacts_of(const Island& island) const {
+    return groups_in({island.groups.begin, island.joints.begin});
+  }
+  std::span<const IslandRows<D>> joints_of(const Island& island) const {
+    return groups_in(island.joints);
+  }
+  std::span<const IslandRows<D>> groups_of(const Island& island) const {
+    return groups_in(island.groups);
+  }
+  IslandRow<D>* first_row(const IslandRows<D>& group) { return rows.data() + group.first; }
+  const IslandRow<D>* first_row(const IslandRows<D>& group) const {
+    return rows.data() + group.first;
+  }
+  std::span<IslandRow<D>> rows_of(const IslandRows<D>& group) {
+    return {first_row(group), static_cast<std::size_t>(group.count)};
+  }
+  std::span<const IslandRow<D>> rows_of(const IslandRows<D>& group) const {
+    return {first_row(group), static_cast<std::size_t>(group.count)};
+  }
+
   /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and
   /// `correction`.
   Solved solve(Island& island, std::span<const BodyMass<D>> masses,
@@ -202,6 +227,20 @@ class IslandSolver {
   bool leaves_for_sweeps(const Island& island, Wide tolerance) const;
 
  private:
+  std::span<const IslandRows<D>> groups_in(Range range) const {
+    return {groups.data() + range.begin, groups.data() + range.end};
+  }
+
+  std::span<const IslandTension<D>> tensions_of(const Island& island) const {
+    return {tensions.data() + island.tensions.begin, tensions.data() + island.tensions.end};
+  }
+  /// What is kept by node, of an island.
+  template <class T>
+  static void set_zero(const Island& island, std::vector<T>& by_node) {
+    const auto begin = by_node.begin();
+    std::fill(begin + island.nodes.begin, begin + island.nodes.end, T::zero());
+  }
+
   Wide begin(const Island& island, std::span<const BodyMass<D>> masses);
   void add_up_impulses(const Island& island);
   Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);

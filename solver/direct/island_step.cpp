@@ -108,16 +108,14 @@ void IslandSolver<D>::assemble_joints(const Island& island, std::span<const Body
   matrix.clear(island.steps);
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     set_mass<D>(masses[body_of[static_cast<std::size_t>(n)]], matrix.diagonal(n));
-  for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
-    const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
+  for (const IslandTension<D>& tension : tensions_of(island)) {
     for (int i = 0; i < Dim<D>::kSpin; ++i)
       for (int j = 0; j < Dim<D>::kSpin; ++j)
         matrix.diagonal(tension.node).at(D + i, D + j) +=
             static_cast<Wide>(tension.stiffness) * across(tension.along, i, j);
   }
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : joints_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     if (group.points > 0) assemble_point(group, row->stiffness);
     for (int r = group.points; r < group.count; ++r) assemble_row(group, row[r]);
   }
@@ -143,9 +141,8 @@ static IslandRow<D> written_out(const IslandRows<D>& group, const IslandRow<D>& 
 /// @pre the blocks are as that has kept them.
 template <int D>
 void IslandSolver<D>::assemble_contacts(const Island& island) {
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     if (group.count > 1 && row[1].holds) {
       assemble_point(group, row[0].stiffness);
       continue;
@@ -174,17 +171,14 @@ Spin<D, Wide> IslandSolver<D>::pull_of(const IslandTension<D>& tension,
 /// @pre assemble_joints.
 template <int D>
 void IslandSolver<D>::load_joints(const Island& island, std::span<const Motion<D>> motions) {
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    solution_[static_cast<std::size_t>(n)] = Vector::zero();
-  for (int t = island.tensions.begin; t < island.tensions.end; ++t) {
-    const IslandTension<D>& tension = tensions[static_cast<std::size_t>(t)];
+  set_zero(island, solution_);
+  for (const IslandTension<D>& tension : tensions_of(island)) {
     const Spin<D, Wide> pull = pull_of(tension, motions);
     for (int i = 0; i < Dim<D>::kSpin; ++i)
       solution_[static_cast<std::size_t>(tension.node)][D + i] -= pull[i];
   }
-  for (int g = island.joints.begin; g < island.joints.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : joints_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     push_rows<D, Wide>(group, row, solution_,
                        [](const IslandRow<D>& of) { return -of.stiffness * of.missing; });
   }
@@ -200,9 +194,8 @@ void IslandSolver<D>::solve_contacts(const Island& island) {
   const auto begin = kept_.begin();
   std::copy(begin + island.nodes.begin, begin + island.nodes.end,
             solution_.begin() + island.nodes.begin);
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    const IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    const IslandRow<D>* row = first_row(group);
     if (row->holds)  // Else no tangent does.
       push_rows<D, Wide>(group, row, solution_, [](const IslandRow<D>& of) {
         return of.holds ? -of.stiffness * of.missing : 0.0;
@@ -241,12 +234,10 @@ void IslandSolver<D>::assemble_row(const IslandRows<D>& group, const IslandRow<D
 /// that of the bounded ones.
 template <int D>
 bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyMass<D>> masses) {
-  for (int n = island.nodes.begin; n < island.nodes.end; ++n)
-    momentum_[static_cast<std::size_t>(n)] = Vector::zero();
+  set_zero(island, momentum_);
   bool bounded = false;
-  for (int g = island.groups.begin; g < island.joints.begin; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : contacts_of(island)) {
+    IslandRow<D>* row = first_row(group);
     const Wide normal = std::max(row[0].impulse + row[0].change, 0.0);
     const Wide bound = group.friction * normal;
     const Wide square = square_of_tangents(group, row);
@@ -270,9 +261,8 @@ bool IslandSolver<D>::hold_to_bounds(const Island& island, std::span<const BodyM
     const Vector more = answer_to<D>(momentum_[node], masses[body_of[node]]);
     for (int i = 0; i < kFreedoms; ++i) solution_[node][i] += more[i];
   }
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    IslandRow<D>* row = &rows[static_cast<std::size_t>(group.first)];
+  for (const IslandRows<D>& group : groups_of(island)) {
+    IslandRow<D>* row = first_row(group);
     for_each_speed<D>(group, row, solution_,
                       [](IslandRow<D>& of, Wide speed) { of.answer = speed; });
   }
@@ -284,10 +274,8 @@ template <int D>
 Wide IslandSolver<D>::best_step(const Island& island) const {
   Wide slope = 0.0;
   Wide curve = 0.0;
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      const IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+  for (const IslandRows<D>& group : groups_of(island)) {
+    for (const IslandRow<D>& row : rows_of(group)) {
       if (row.change == 0.0) continue;
       slope += row.change * row.missing;
       curve += row.change * row.answer;
@@ -305,10 +293,8 @@ Wide IslandSolver<D>::take(const Island& island, std::span<const BodyMass<D>> ma
   for (int n = island.nodes.begin; n < island.nodes.end; ++n)
     for (int i = 0; i < kFreedoms; ++i)
       change[static_cast<std::size_t>(n)][i] += step * solution_[static_cast<std::size_t>(n)][i];
-  for (int g = island.groups.begin; g < island.groups.end; ++g) {
-    const IslandRows<D>& group = groups[static_cast<std::size_t>(g)];
-    for (int r = group.first; r < group.first + group.count; ++r) {
-      IslandRow<D>& row = rows[static_cast<std::size_t>(r)];
+  for (const IslandRows<D>& group : groups_of(island)) {
+    for (IslandRow<D>& row : rows_of(group)) {
       row.impulse += step * row.change;
       row.missing += step * row.answer;
     }
