@@ -87,9 +87,7 @@ void IslandSolver<D>::solve_and_close(const Island& island, std::span<const Moti
                                       Wide fastest) {
   load_both(island, motions);
   matrix.solve_lower({island.steps.begin, island.contact_steps.begin}, both_);
-  const auto begin = both_.begin();
-  std::copy(begin + island.nodes.begin, begin + island.nodes.end,
-            kept_both_.begin() + island.nodes.begin);
+  copy(island, both_, kept_both_);
   for (const IslandRows<D>& group : contacts_of(island)) {
     const IslandRow<D>* row = first_row(group);
     push_rows<D, WidePair>(group, row, both_, [](const IslandRow<D>& of) {

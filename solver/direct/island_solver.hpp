@@ -234,11 +234,17 @@ class IslandSolver {
   std::span<const IslandTension<D>> tensions_of(const Island& island) const {
     return {tensions.data() + island.tensions.begin, tensions.data() + island.tensions.end};
   }
-  /// What is kept by node, of an island.
+  /// What is kept by node, of one island.
   template <class T>
   static void set_zero(const Island& island, std::vector<T>& by_node) {
     const auto begin = by_node.begin();
     std::fill(begin + island.nodes.begin, begin + island.nodes.end, T::zero());
+  }
+  template <class T>
+  static void copy(const Island& island, const std::vector<T>& from, std::vector<T>& to) {
+    const auto begin = from.begin();
+    std::copy(begin + island.nodes.begin, begin + island.nodes.end,
+              to.begin() + island.nodes.begin);
   }
 
   Wide begin(const Island& island, std::span<const BodyMass<D>> masses);

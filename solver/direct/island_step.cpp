@@ -183,17 +183,13 @@ void IslandSolver<D>::load_joints(const Island& island, std::span<const Motion<D
                        [](const IslandRow<D>& of) { return -of.stiffness * of.missing; });
   }
   matrix.solve_lower({island.steps.begin, island.contact_steps.begin}, solution_);
-  const auto begin = solution_.begin();
-  std::copy(begin + island.nodes.begin, begin + island.nodes.end,
-            kept_.begin() + island.nodes.begin);
+  copy(island, solution_, kept_);
 }
 
 /// Solves for the bodies that touch something, with the contacts that hold. @pre load_joints.
 template <int D>
 void IslandSolver<D>::solve_contacts(const Island& island) {
-  const auto begin = kept_.begin();
-  std::copy(begin + island.nodes.begin, begin + island.nodes.end,
-            solution_.begin() + island.nodes.begin);
+  copy(island, kept_, solution_);
   for (const IslandRows<D>& group : contacts_of(island)) {
     const IslandRow<D>* row = first_row(group);
     if (row->holds)  // Else no tangent does.
