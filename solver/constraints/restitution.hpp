@@ -43,14 +43,15 @@ template <int D, int W>
     const L approach = speed + extra.pull * h;
     const L meets = select(point.gap + h * speed < zero, L(1.0f), zero);
     const L fast = select(approach < L(-context.tuning.restitution_threshold), meets, zero);
-    const L bounces = select(extra.restitution > zero, fast, zero);
+    const L restitutes = select(extra.restitution > zero, fast, zero);
+    // A lane without this point would pass for one that bounces, substep by substep.
+    const L bounces = select(point.normal_mass > zero, restitutes, zero);
     if (!any_above_zero(bounces)) continue;
     any = true;
     const L rebound = rebound_speed(extra.restitution, approach, point.gap, extra.pull, h);
     // With the arms where they are now: an effective mass of the tick's start would add energy.
     const L k = coupling(block, block.normal, arms, block.normal, arms);
-    const L has_mass = select(point.normal_mass > zero, bounces, zero);
-    const L impulse = has_mass * max(rebound - speed, zero) / select(k > zero, k, L(1.0f));
+    const L impulse = bounces * max(rebound - speed, zero) / select(k > zero, k, L(1.0f));
     extra.bounce_impulse[i] += impulse;
     apply_pair(impulse * block.normal, arms, block, a, b);
   }
