@@ -11,11 +11,18 @@ inline void add_cone_impulse(const JointRow<3>& row, PairImpulse<3>& sum) {
   if (has_cone(row)) sum.add(row.rows.cone_axis, -row.cone_impulse);
 }
 
+/// J^T lambda of a joint's equalities.
 template <int D>
-void warm_start(const JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+PairImpulse<D> impulse_of_equalities(const JointRow<D>& row) {
   PairImpulse<D> sum;
   for (int i = 0; i < row.rows.count; ++i)
     sum.add(row.rows.rows[static_cast<std::size_t>(i)], row.impulse[i]);
+  return sum;
+}
+
+template <int D>
+void warm_start(const JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+  PairImpulse<D> sum = impulse_of_equalities(row);
   if (row.rows.has_axis) {
     sum.add(row.rows.axis, row.spring_impulse + row.lower_impulse - row.upper_impulse);
     sum.add(row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis, row.motor_impulse);

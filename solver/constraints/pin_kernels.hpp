@@ -30,6 +30,8 @@ struct PinKernels {
   static void evaluate(float limit_reach_s, const PinRange<D, W>& range);
   /// v += M^-1 J^T lambda.
   static void warm_start(const PinRange<D, W>& range);
+  /// The same of the equalities alone.
+  static void warm_start_equalities(const PinRange<D, W>& range);
   /// Which lanes have an equality that misses more than each bound.
   static void look_for_rest(const StepContext<D>& context, const JointBounds& bounds,
                             const PinRange<D, W>& range);

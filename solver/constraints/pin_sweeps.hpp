@@ -238,17 +238,28 @@ void PinKernels<D, W>::evaluate(float limit_reach_s, const PinRange<D, W>& range
     evaluate_pin(limit_reach_s, range, *block);
 }
 
+/// v += M^-1 J^T lambda of the equalities, and of the rest where a pin has any and it is asked for.
 template <int D, int W>
-void PinKernels<D, W>::warm_start(const PinRange<D, W>& range) {
+[[gnu::always_inline]] inline void push_again(const PinRange<D, W>& range, bool all_rows) {
   for (PinBlock<D, W>* block = range.begin; block != range.end; ++block) {
     PinMotions<D, W> motions = gather_velocities(range, *block);
     PinImpulse<D, W> sum;
     const int count = equalities_of<D>(block->form);
     for (int i = 0; i < count; ++i) add_equality(*block, i, block->impulse[i], sum);
-    if (block->turns != nullptr) add_turns(*block, sum);
+    if (all_rows && block->turns != nullptr) add_turns(*block, sum);
     apply(*block, sum, motions);
     scatter_velocities(range, *block, motions);
   }
+}
+
+template <int D, int W>
+void PinKernels<D, W>::warm_start(const PinRange<D, W>& range) {
+  push_again(range, true);
+}
+
+template <int D, int W>
+void PinKernels<D, W>::warm_start_equalities(const PinRange<D, W>& range) {
+  push_again(range, false);
 }
 
 template <int D, int W>

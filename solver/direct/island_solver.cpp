@@ -99,19 +99,6 @@ static Effort effort_of(const IslandSolver<D>& solver,
   return solver.only_thin && island.joint_count == 0 ? kBrief : kThorough;
 }
 
-template <int D>
-Wide IslandSolver<D>::begin(const Island& island, std::span<const BodyMass<D>> masses) {
-  set_zero(island, change);
-  momentum_.resize(body_of.size());
-  guessed_.resize(body_of.size());
-  return worth_of_guess(island, masses);
-}
-
-template <int D>
-void IslandSolver<D>::weaken_guess(const Island& island, std::span<const BodyMass<D>> masses) {
-  if (const Wide share = begin(island, masses); share < 1.0) keep_of_guess(island, share);
-}
-
 /// Which rows of contacts are equalities, by the natural map.
 template <int D>
 void IslandSolver<D>::choose(const Island& island) {
@@ -294,7 +281,10 @@ Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masse
   kept_.resize(body_of.size());
   both_.resize(body_of.size());
   kept_both_.resize(body_of.size());
-  const Wide share = begin(island, masses);
+  momentum_.resize(body_of.size());
+  guessed_.resize(body_of.size());
+  set_zero(island, change);
+  const Wide share = worth_of_guess(island, masses);
   foresee_turns(island, motions, step.h);
   if (share < 1.0) keep_of_guess(island, share);
   const int rounds = effort_of(*this, island).rounds;
@@ -310,8 +300,6 @@ Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masse
   return taken < kWholeStep ? Solved::kPartly : Solved::kWhole;
 }
 
-template void IslandSolver<2>::weaken_guess(const Island&, std::span<const BodyMass<2>>);
-template void IslandSolver<3>::weaken_guess(const Island&, std::span<const BodyMass<3>>);
 template bool IslandSolver<2>::leaves_for_sweeps(const Island&, Wide) const;
 template bool IslandSolver<3>::leaves_for_sweeps(const Island&, Wide) const;
 template Solved IslandSolver<2>::solve(Island&, std::span<const BodyMass<2>>,

@@ -134,7 +134,6 @@ class IslandSolver {
     bool planned;                ///< It is known whether and how to, as long as the same holds.
     bool numbered;               ///< It was looked at closely: it has nodes from the start.
     bool solvable;               ///< It costs little enough.
-    bool grouped;                ///< All that it holds has groups; else only joints have.
     bool taken;                  ///< Solved at once in this tick; else the sweeps have it.
     bool weighed;                ///< They have it, but a guess that has gone wrong is weakened.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
@@ -182,10 +181,11 @@ class IslandSolver {
   ByIsland slots_of;                       ///< By island, if is_sorted.
   ByIsland held_of;                        ///< Places in `held`, the same.
   bool is_sorted = false;                  ///< Since islands were last found.
-  std::vector<std::uint32_t> loaded;       ///< Slots of bodies whose load calls for this solver.
-  bool acts = false;                       ///< In this tick, on some island.
-  bool has_all = false;                    ///< All that moves, in substeps of twice the length.
-  bool only_thin = false;                  ///< What was planned holds for thin islands alone.
+  std::vector<Motion<D>> guess;       ///< By slot: what the warm start has added (weigh_guesses).
+  std::vector<std::uint32_t> loaded;  ///< Slots of bodies whose load calls for this solver.
+  bool acts = false;                  ///< In this tick, on some island.
+  bool has_all = false;               ///< All that moves, in substeps of twice the length.
+  bool only_thin = false;             ///< What was planned holds for thin islands alone.
   IslandWork work;
 
   /// The island of a pair; -1 where neither of the two moves.
@@ -220,9 +220,6 @@ class IslandSolver {
   /// `correction`.
   Solved solve(Island& island, std::span<const BodyMass<D>> masses,
                std::span<const Motion<D>> motions, const IslandStep& step);
-  /// The first thing that `solve` does, by itself: takes back what is not worth having of the
-  /// impulses that the substep begins with. Writes impulses and `change`.
-  void weaken_guess(const Island& island, std::span<const BodyMass<D>> masses);
   /// Whether a contact of a solved island still approaches, pulls or slides by more than this, m/s.
   bool leaves_for_sweeps(const Island& island, Wide tolerance) const;
 
@@ -247,7 +244,6 @@ class IslandSolver {
               to.begin() + island.nodes.begin);
   }
 
-  Wide begin(const Island& island, std::span<const BodyMass<D>> masses);
   void add_up_impulses(const Island& island);
   Wide worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses);
   void keep_of_guess(const Island& island, Wide share);

@@ -205,6 +205,7 @@ static void plan_wanted(StepScratch<D>& scratch) {
 template <int D>
 static bool begin_islands(StepScratch<D>& scratch) {
   bool any = false;
+  scratch.islands_solved.guess.resize(scratch.motions.size());
   for (auto& island : scratch.islands_solved.islands) {
     island.taken = island.wanted && island.solvable;
     island.weighed = island.wanted && !island.solvable && may_be_weighed<D>(island);

@@ -33,10 +33,9 @@ bool list_held(Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void list_groups(StepScratch<D>& scratch);
 
-/// Lists nodes and groups of an island that the sweeps have, all of them, behind those of the
-/// others: its guess is to be weighed. They stay as long as the same holds.
+/// Sorts the slots, and the places of what holds, by island, unless they are sorted already.
 template <int D>
-void list_weighed(StepScratch<D>& scratch, typename IslandSolver<D>::Island& island);
+void sort_by_island(std::size_t slots, IslandSolver<D>& solver);
 
 /// Writes the greatest mass and inertia of an island's nodes.
 template <int D>

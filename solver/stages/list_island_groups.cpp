@@ -30,7 +30,6 @@ static void place_groups(IslandSolver<D>& solver) {
     island.groups = {next, next};
     next += count;
     island.joints = {next - island.joints.end, next};
-    island.grouped = island.solvable;
   }
   solver.groups.resize(static_cast<std::size_t>(next));
   solver.sources.resize(static_cast<std::size_t>(next));
@@ -57,11 +56,11 @@ static void list_points(const HeldPair& pair, int beside, std::size_t first,
   }
 }
 
-/// Gives groups room for all the rows that each may have, behind those of the others.
+/// Gives groups room for all the rows that each may have.
 template <int D>
-static void place_rows(std::size_t first_group, std::size_t rows, IslandSolver<D>& solver) {
-  for (std::size_t g = first_group; g < solver.groups.size(); ++g) {
-    IslandRows<D>& group = solver.groups[g];
+static void place_rows(IslandSolver<D>& solver) {
+  std::size_t rows = 0;
+  for (IslandRows<D>& group : solver.groups) {
     group.first = static_cast<int>(rows);
     rows += group.is_contact ? 1 + Dim<D>::kTangents : Dim<D>::kFreedoms;
   }
@@ -82,7 +81,7 @@ void list_groups(StepScratch<D>& scratch) {
     list_points(pair, beside, static_cast<std::size_t>(island.groups.end), solver);
     island.groups.end += pair.points;
   }
-  place_rows(0, 0, solver);
+  place_rows(solver);
 }
 
 template <int D>
@@ -100,8 +99,8 @@ void find_heaviest(const StepScratch<D>& scratch, typename IslandSolver<D>::Isla
 
 /// Sorts the numbers [0, count) by island_at(number); those of no island, -1, are left out.
 template <class IslandAt>
-static void sort_by_island(std::size_t count, std::size_t islands, IslandAt&& island_at,
-                           ByIsland& sorted) {
+static void sort_numbers(std::size_t count, std::size_t islands, IslandAt&& island_at,
+                         ByIsland& sorted) {
   sorted.first.assign(islands + 1, 0);
   for (std::size_t i = 0; i < count; ++i)
     if (const int at = island_at(i); at >= 0) ++sorted.first[static_cast<std::size_t>(at)];
@@ -114,52 +113,22 @@ static void sort_by_island(std::size_t count, std::size_t islands, IslandAt&& is
 }
 
 template <int D>
-static void sort_by_island(std::size_t slots, IslandSolver<D>& solver) {
+void sort_by_island(std::size_t slots, IslandSolver<D>& solver) {
   if (solver.is_sorted) return;
-  sort_by_island(
+  sort_numbers(
       slots, solver.islands.size(), [&](std::size_t slot) { return solver.island_of[slot]; },
       solver.slots_of);
-  sort_by_island(
+  sort_numbers(
       solver.held.size(), solver.islands.size(),
       [&](std::size_t place) { return solver.island_at(solver.held[place]); }, solver.held_of);
   solver.is_sorted = true;
-}
-
-template <int D>
-void list_weighed(StepScratch<D>& scratch, typename IslandSolver<D>::Island& island) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  const auto at = static_cast<std::size_t>(&island - solver.islands.data());
-  sort_by_island(scratch.masses.size(), solver);
-  island.nodes.begin = island.nodes.end = static_cast<int>(solver.body_of.size());
-  for (const std::uint32_t slot : solver.slots_of.of(at)) {
-    solver.node_of[slot] = island.nodes.end++;
-    solver.body_of.push_back(slot);
-  }
-  solver.change.resize(solver.body_of.size());
-  solver.correction.resize(solver.body_of.size());
-  const std::size_t first = solver.groups.size();
-  int joints = 0;
-  for (const std::uint32_t place : solver.held_of.of(at)) {
-    const HeldPair& pair = solver.held[place];
-    const std::size_t next = solver.groups.size();
-    solver.groups.resize(next + static_cast<std::size_t>(pair.points));
-    solver.sources.resize(solver.groups.size());
-    list_points(pair, -1, next, solver);
-    if (pair.lane < 0) ++joints;
-  }
-  const auto end = static_cast<int>(solver.groups.size());
-  island.groups = {static_cast<int>(first), end};
-  island.joints = {end - joints, end};
-  island.grouped = true;
-  place_rows(first, solver.rows.size(), solver);
-  find_heaviest(scratch, island);
 }
 
 template void list_groups(StepScratch<2>&);
 template void list_groups(StepScratch<3>&);
 template void find_heaviest(const StepScratch<2>&, IslandSolver<2>::Island&);
 template void find_heaviest(const StepScratch<3>&, IslandSolver<3>::Island&);
-template void list_weighed(StepScratch<2>&, IslandSolver<2>::Island&);
-template void list_weighed(StepScratch<3>&, IslandSolver<3>::Island&);
+template void sort_by_island(std::size_t, IslandSolver<2>&);
+template void sort_by_island(std::size_t, IslandSolver<3>&);
 
 }  // namespace cycloid::solver

@@ -1,57 +1,9 @@
 #include "solver/constraints/contact_lanes.hpp"
+#include "solver/stages/island_rest.hpp"
 #include "solver/stages/island_rows.hpp"
-#include "solver/stages/pin_rows.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
-
-/// What an island may miss before it is solved. The impulses of a solve have stopped what moved;
-/// as the next warm start they would set it going the other way, so what was just solved is held to
-/// twenty times less. Overlap may be left half a millimetre beyond the slop. At 1 mm/s a stack of
-/// thirty leans until its boxes move at 11 mm/s before it is caught, over and over.
-static constexpr RestBounds kRest{4.0e-4f, 2.0e-5f, 1.0e-2f};
-/// The same of joints, m/s or rad/s; and what one may miss before its island's guess is looked at
-/// for its worth where it is left to the sweeps. Swings of what is solved well miss as much.
-static constexpr JointBounds kJointBounds{kRest.misses, kRest.stirs, 1.0f};
-
-/// Whether a rigid row of a joint misses more than the bound, m/s or rad/s.
-template <int D>
-static bool misses(const StepContext<D>& context, const StepScratch<D>& scratch,
-                   const JointRow<D>& joint, float bound) {
-  const Motion<D>& a = scratch.motions[joint.body_a];
-  const Motion<D>& b = scratch.motions[joint.body_b];
-  for (int r = 0; r < joint.rows.count; ++r) {
-    const Row<D>& row = joint.rows.rows[static_cast<std::size_t>(r)];
-    if (abs(row_speed(row, a, b) + context.joint.bias_rate * row.error) > bound) return true;
-  }
-  return false;
-}
-
-/// One of the bounds on what a joint misses, and what of a block of pins tells which do.
-struct JointBound {
-  float JointBounds::*bound;
-  LaneBits PinRest::*lanes;
-};
-static constexpr JointBound kMisses{&JointBounds::misses, &PinRest::misses};
-static constexpr JointBound kStirs{&JointBounds::stirs, &PinRest::stirs};
-static constexpr JointBound kIsWild{&JointBounds::is_wild, &PinRest::is_wild};
-
-/// Whether a joint of an island misses more than one of the bounds. @pre pins were looked at.
-template <int D>
-static bool any_joint_misses(const StepContext<D>& context, const StepScratch<D>& scratch,
-                             const typename IslandSolver<D>::Island& island,
-                             const JointBound& bound) {
-  bool any = false;
-  for_each_joint(
-      scratch.pins, scratch.islands_solved, island.joints, [&](const auto* block, int at, int) {
-        if (any) return;
-        any = block != nullptr
-                  ? (block->rest.*bound.lanes >> at & 1u) != 0
-                  : misses(context, scratch, scratch.joint_rows[static_cast<std::size_t>(at)],
-                           kJointBounds.*bound.bound);
-      });
-  return any;
-}
 
 /// In which blocks' lanes the warm start has left something, over all blocks.
 struct Unrest {
@@ -113,18 +65,6 @@ static void hand_over(const typename IslandSolver<D>::Island& island, bool sweep
   });
 }
 
-/// Takes back what is not worth having of the guess of an island that the sweeps have, where that
-/// sets its joints going: it may be of a substep that solved the island at once.
-template <int D, int W>
-static void weigh_island(const StepContext<D>& context, StepScratch<D>& scratch,
-                         typename IslandSolver<D>::Island& island) {
-  if (!any_joint_misses(context, scratch, island, kIsWild)) return;
-  if (!island.grouped) list_weighed(scratch, island);
-  gather_island<D, W>(context, scratch, island);
-  scratch.islands_solved.weaken_guess(island, scratch.masses);
-  scatter_island<D, W>(scratch, island);
-}
-
 /// Whether contacts of an island that was solved as a whole are left to the sweeps. Not what they
 /// miss where there are joints, for these pass the sweeps by: of a light body between a load and a
 /// joint a sweep would part the joint by what the contact misses, substep by substep.
@@ -141,10 +81,7 @@ template <int D, int W>
 static void solve_island(const StepContext<D>& context, StepScratch<D>& scratch,
                          typename IslandSolver<D>::Island& island) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  if (island.products_left <= 0) {
-    weigh_island<D, W>(context, scratch, island);
-    return hand_over<D, W>(island, true, true, scratch);
-  }
+  if (island.products_left <= 0) return hand_over<D, W>(island, true, true, scratch);
   gather_island<D, W>(context, scratch, island);
   const IslandStep step{static_cast<Wide>(context.h),
                         static_cast<Wide>(context.tuning.push_speed_max)};
@@ -163,7 +100,8 @@ static void solve_island(const StepContext<D>& context, StepScratch<D>& scratch,
 /// Reads and writes velocities and impulses of contacts and joints, and which lanes are settled.
 /// Serial, island by island in the order of their lowest slots.
 template <int D, int W>
-void solve_islands(const StepContext<D>& context, const Lot& lot, StepScratch<D>& scratch) {
+void solve_islands(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                   StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   if (!solver.acts) return;
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
@@ -175,8 +113,8 @@ void solve_islands(const StepContext<D>& context, const Lot& lot, StepScratch<D>
     const Range range{0, static_cast<int>(pins.blocks.size())};
     PinKernels<D, P>::look_for_rest(context, kJointBounds, pin_range<D, P>(scratch, range));
   });
+  weigh_guesses<D, W>(context, lot, workers, scratch);
   for (auto& island : solver.islands) {
-    if (island.weighed) weigh_island<D, W>(context, scratch, island);
     if (!island.taken) continue;
     island.corrects = island.closes = false;
     island.stirred = is_restless<D, W>(context, scratch, all, island);

@@ -98,7 +98,11 @@ StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D
 template <int D, int W>
 void rescale_impulses(float scale, StepScratch<D>& scratch);
 template <int D, int W>
-void solve_islands(const StepContext<D>& context, const Lot& lot, StepScratch<D>& scratch);
+void weigh_guesses(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                   StepScratch<D>& scratch);
+template <int D, int W>
+void solve_islands(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                   StepScratch<D>& scratch);
 template <int D>
 void correct_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>

@@ -168,14 +168,6 @@ TEST(IslandSolver, KeepsNoStressBeyondManyTimesItsLoad) {
   for (const IslandRow<2>& row : body.solver.rows) EXPECT_LT(row.impulse, 20.0);
 }
 
-// What sweeps are to go on from loses its guess as well, and nothing is solved.
-TEST(IslandSolver, WeakensAGuessWithoutSolving) {
-  BodyBetweenJoints body(1000.0f, 1010.0f, 10.0f);
-  body.solver.weaken_guess(body.island, body.masses);
-  EXPECT_NEAR(body.solver.change[0][0], -10.0, 1.0e-2) << "it has not moved";
-  for (const IslandRow<2>& row : body.solver.rows) EXPECT_NEAR(row.impulse, 0.0, 1.0);
-}
-
 /// A body of 1 kg whose only point is held by a joint to the world, half a metre from its centre.
 struct BodyOnJoint : BodyOnGround {
   BodyOnJoint() {
