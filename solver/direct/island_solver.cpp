@@ -41,6 +41,12 @@ bool IslandSolver<D>::leaves_for_sweeps(const Island& island, Wide tolerance) co
   return false;
 }
 
+Wide share_worth_having(Wide work, Wide energy) {
+  constexpr Wide kMuch = 0.1;
+  if (!(work > kMuch * energy) || !(energy > 0.0)) return 1.0;
+  return std::clamp(1.0 - work / energy, 0.0, 1.0);
+}
+
 /// What all impulses of an island come to on each body, into `momentum_`.
 template <int D>
 void IslandSolver<D>::add_up_impulses(const Island& island) {
@@ -57,7 +63,6 @@ void IslandSolver<D>::add_up_impulses(const Island& island) {
 /// once it turns a little. Leaves in `momentum_` the velocities that the guess is of.
 template <int D>
 Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyMass<D>> masses) {
-  constexpr Wide kMuch = 0.1;  // Less than a tenth off is as good as it gets between substeps.
   add_up_impulses(island);
   Wide work_done = 0.0;
   for (const IslandRows<D>& group : groups_of(island))
@@ -69,8 +74,7 @@ Wide IslandSolver<D>::worth_of_guess(const Island& island, std::span<const BodyM
     energy += dot(momentum, velocity);
     momentum = guessed_[static_cast<std::size_t>(n)] = velocity;
   }
-  if (!(work_done > kMuch * energy) || !(energy > 0.0)) return 1.0;
-  return std::clamp(1.0 - work_done / energy, 0.0, 1.0);
+  return share_worth_having(work_done, energy);
 }
 
 /// Takes the rest of the first guess back.

@@ -86,6 +86,12 @@ struct ByIsland {
   }
 };
 
+/// How much of a guess is worth having, from 0 to 1: with so much of it the energy of the bodies is
+/// least, and less than a tenth off is as good as it gets between substeps.
+/// @param work    What the impulses of the guess do at the speeds that it has led to, J.
+/// @param energy  What they do at those that they alone make, J.
+Wide share_worth_having(Wide work, Wide energy);
+
 /// What came of an island's solve.
 enum class Solved {
   kWhole,

@@ -205,7 +205,6 @@ static void plan_wanted(StepScratch<D>& scratch) {
 template <int D>
 static bool begin_islands(StepScratch<D>& scratch) {
   bool any = false;
-  scratch.islands_solved.guess.resize(scratch.motions.size());
   for (auto& island : scratch.islands_solved.islands) {
     island.taken = island.wanted && island.solvable;
     island.weighed = island.wanted && !island.solvable && may_be_weighed<D>(island);
@@ -213,6 +212,7 @@ static bool begin_islands(StepScratch<D>& scratch) {
     island.swept = island.stirred = island.corrects = false;
     if (!island.taken && !island.weighed) continue;
     find_heaviest(scratch, island);
+    if (island.joint_count > 0) scratch.islands_solved.guess.resize(scratch.motions.size());
     any = true;
   }
   return any;

@@ -94,8 +94,8 @@ static void solve_island(const StepContext<D>& context, StepScratch<D>& scratch,
 /// Solves the islands that are small enough at once, from where the warm start has led, and leaves
 /// to the sweeps what it has brought to rest: a stack leans by less than an island misses at rest,
 /// and only they take that back. What is solved, biased sweeps pass by; what was solved in part is
-/// left to soft sweeps as well, for joints cannot wait. Of what only the sweeps solve, and is
-/// jointed, it takes back a guess that has gone wrong.
+/// left to soft sweeps as well, for joints cannot wait. What only they solve has its guess weighed
+/// before (weigh_guesses).
 ///
 /// Reads and writes velocities and impulses of contacts and joints, and which lanes are settled.
 /// Serial, island by island in the order of their lowest slots.

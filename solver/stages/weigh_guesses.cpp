@@ -10,10 +10,6 @@
 
 namespace cycloid::solver {
 
-/// Work of the guess over its energy from which on less of it is better: less than a tenth off is
-/// as good as it gets between substeps.
-static constexpr Wide kMuchWork = 0.1;
-
 /// Whether an island's guess is to be weighed: the sweeps have it, and the warm start has set one
 /// of its joints going.
 template <int D>
@@ -148,8 +144,7 @@ static Wide share_of_guess(std::size_t island, StepScratch<D>& scratch) {
   }
   for (const std::uint32_t place : solver.held_of.of(island))
     work += work_on_massless<D, W>(solver.held[place], scratch);
-  if (!(work > kMuchWork * energy) || !(energy > 0.0)) return 1.0;
-  return std::clamp(1.0 - work / energy, 0.0, 1.0);
+  return share_worth_having(work, energy);
 }
 
 template <int D, int W>
@@ -176,14 +171,11 @@ static void keep_share(float share, std::size_t island, StepScratch<D>& scratch)
     scratch.motions[slot].spin += (share - 1.0f) * solver.guess[slot].spin;
   }
   const auto scale = [&](auto& block, int lane) { scale_lane(share, lane, block); };
+  const auto scale_row = [&](JointRow<D>& row) {
+    for (float& impulse : row.impulse) impulse *= share;
+  };
   for (const std::uint32_t place : solver.held_of.of(island))
-    visit_held<D, W>(
-        solver.held[place], scratch, scale,
-        [&](JointRow<D>& row) {
-          for (float& impulse : row.impulse) impulse *= share;
-        },
-
-        scale);
+    visit_held<D, W>(solver.held[place], scratch, scale, scale_row, scale);
 }
 
 /// Takes back what is not worth having of the guess of islands that the sweeps have, where that
@@ -191,7 +183,8 @@ static void keep_share(float share, std::size_t island, StepScratch<D>& scratch)
 /// over, or of a stress in what lies jammed.
 ///
 /// Reads which pins and joint rows are wild, and masses; writes velocities and impulses of what the
-/// island holds. Serial, island by island; no row is of two islands.
+/// island holds. The guess of all islands colour after colour (for_each_by_color), then serially
+/// island by island; no row is of two.
 template <int D, int W>
 void weigh_guesses(const StepContext<D>& context, const Lot& lot, Workers& workers,
                    StepScratch<D>& scratch) {

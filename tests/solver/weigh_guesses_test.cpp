@@ -44,6 +44,46 @@ struct BodyBetweenRows {
     scratch.pins.lane_of.push_back(Pins<2>::kNone);
   }
 
+  /// Holds the body by a pin where joint 0 was.
+  void pin_it(float impulse) {
+    auto& pins = std::get<PinBlocks<2, 1>>(scratch.pins.blocks);
+    PinBlock<2, 1>& block = pins.blocks.emplace_back();
+    block = {};
+    block.body_b[0] = 1;
+    block.moves_a = block.used = block.rest.is_wild = 1;
+    block.mass_a.inverse_mass = Lanes<1>(0.5f);
+    block.direction[0][0] = block.direction[1][1] = Lanes<1>(-1.0f);
+    block.impulse[0] = Lanes<1>(impulse);
+    pins.colors = {{0, 1}};
+    scratch.pins.lanes = 1;
+    scratch.pins.lane_of[0] = 0;
+    scratch.single_rows = {{1}, {{0, 0}}, {0, 1}};
+  }
+  float pin_impulse() const {
+    return std::get<PinBlocks<2, 1>>(scratch.pins.blocks).blocks[0].impulse[0].raw[0];
+  }
+
+  /// Puts the body onto slot 2, which pushes it up.
+  void put_down(float impulse) {
+    auto& contacts = std::get<ContactBlocks<2, 1>>(scratch.contact_blocks);
+    ContactBlock<2, 1>& block = contacts.blocks.emplace_back();
+    block = {};
+    block.body_a[0] = 2;
+    block.moves_b = block.point_count = 1;
+    block.mass_b.inverse_mass = Lanes<1>(0.5f);
+    block.normal[1] = Lanes<1>(1.0f);
+    block.points[0].normal_impulse = Lanes<1>(impulse);
+    contacts.colors = {{0, 1}};
+    lot.colors = {0, 1};
+    scratch.islands_solved.held.push_back({2, 0, 0, 0, 1, false, true});
+  }
+  float contact_impulse() const {
+    return std::get<ContactBlocks<2, 1>>(scratch.contact_blocks)
+        .blocks[0]
+        .points[0]
+        .normal_impulse.raw[0];
+  }
+
   void weigh() {
     const StepContext<2> context = make_step_context<2>(1.0f / 60.0f, {{0.0f, 0.0f}}, Tuning{});
     weigh_guesses<2, 1>(context, lot, workers, scratch);
@@ -88,6 +128,32 @@ TEST(WeighGuesses, ReckonsWithGroundThatMoves) {
   body.weigh();
   EXPECT_EQ(body.speed(), 5.0f);
   EXPECT_EQ(body.impulse(0), 20.0f);
+}
+
+// A pin whose guess of 20 N s has turned 5 m/s to the left into 5 to the right.
+TEST(WeighGuesses, WeighsPins) {
+  for (const float carried : {0.0f, 5.0f}) {
+    BodyBetweenRows body(5.0f, 0.0f, 0.0f);
+    body.pin_it(20.0f);
+    body.scratch.motions[1].velocity = {{carried, 0.0f}};
+    body.weigh();
+    EXPECT_NEAR(body.speed(), carried, 1.0e-5f);
+    EXPECT_NEAR(body.pin_impulse(), carried > 0.0f ? 20.0f : 10.0f, 1.0e-5f);
+  }
+}
+
+// A contact has pushed the body up to 5 m/s, beside a joint that is wild.
+TEST(WeighGuesses, WeighsContacts) {
+  for (const float lifted : {0.0f, 5.0f}) {
+    BodyBetweenRows body(0.0f, 0.0f, 0.0f);
+    body.put_down(10.0f);
+    body.scratch.motions[0].velocity = {{0.0f, 5.0f}};
+    body.scratch.motions[1].velocity = {{-3.0f, 0.0f}};
+    body.scratch.motions[2].velocity = {{0.0f, lifted}};
+    body.weigh();
+    EXPECT_NEAR(body.scratch.motions[0].velocity[1], lifted, 1.0e-5f);
+    EXPECT_NEAR(body.contact_impulse(), 2.0f * lifted, 1.0e-5f);
+  }
 }
 
 TEST(WeighGuesses, LooksAtNothingThatMissesLittle) {

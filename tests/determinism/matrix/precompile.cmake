@@ -1,8 +1,8 @@
 # Compiles a row's program in a tenth of the time: what nearly every file of the solver and the
 # scenes includes is parsed once, and files are compiled sixteen at a time. Given to CMake by
 # build.py, and by cmake/united.cmake for `./dev sanitize --quick`, so that the build of `./dev test`
-# does not depend on it: there, a file that forgets an include does not compile, and each file is a
-# unit, held to the same goldens.
+# does not depend on it: there, each file of the solver, the scenes and the protocol is a unit, held
+# to the same goldens, and one that forgets an include does not compile.
 set(CMAKE_UNITY_BUILD ON)
 set(CMAKE_UNITY_BUILD_BATCH_SIZE 16)
 
