@@ -7,31 +7,6 @@
 
 namespace cycloid::solver {
 
-constexpr float kTick = 1.0f / 60.0f;
-
-template <int D>
-static WorldDef<D> def_with(const Tuning& tuning, Material material = {}) {
-  WorldDef<D> def = with_gravity<D>(material);
-  def.tuning = tuning;
-  return def;
-}
-
-template <int D>
-static Vec<D> at(float x, float y) {
-  Vec<D> p = Vec<D>::zero();
-  p[0] = x;
-  p[1] = y;
-  return p;
-}
-
-static std::vector<BodyId> add_stack(World<2>& world, int count) {
-  add_ground<2>(world, up<2>());
-  std::vector<BodyId> boxes;
-  for (int i = 0; i < count; ++i)
-    boxes.push_back(add_at<2>(world, {{0.0f, 0.5f + static_cast<float>(i)}}, box(0.5f, 0.5f)));
-  return boxes;
-}
-
 /// The two normal impulses of a box on a plane after one sweep from nothing.
 static std::array<float, 2> impulses_after_one_sweep(ContactBlockRows together) {
   Tuning tuning = Tuning::pgs();
@@ -39,6 +14,7 @@ static std::array<float, 2> impulses_after_one_sweep(ContactBlockRows together) 
   tuning.warm_starting = 0.0f;
   tuning.contact_block = together;
   World<2> world = make_world(def_with<2>(tuning));
+  add_ground<2>(world, up<2>());
   add_stack(world, 1);
   step(world, 1);
   const auto& contacts = world.state().contacts;

@@ -110,7 +110,8 @@ struct MovedBodies {
 
 /// With whole turns, and without a function of libm, which is another on each platform: the root of
 /// doubles is exact.
-static double way_of(double tick_s, const Body<2>& body, const Motion<2>& motion, double angle) {
+static double way_in_a_tick(double tick_s, const Body<2>& body, const Motion<2>& motion,
+                            double angle) {
   const double x = motion.delta_position[0];
   const double y = motion.delta_position[1];
   const double flown = std::sqrt(x * x + y * y);
@@ -135,7 +136,7 @@ static MovedBodies drawn_moved(std::mt19937& random, std::uint32_t count) {
                      rotation_by(Spin<2>{{angle}})};
     if (random() % 8 == 0) motion.delta_position[random() % 2] = std::nanf("");
     moved.motions.push_back(motion);
-    moved.ways.push_back(way_of(1.0 / 60.0, body, motion, angle));
+    moved.ways.push_back(way_in_a_tick(1.0 / 60.0, body, motion, angle));
     if (i % 2 == 1) moved.slots.push_back(i);
   }
   return moved;
@@ -239,7 +240,6 @@ static Passers<D> drawn_passers(std::mt19937& random, int count) {
 
 template <int D>
 static void expect_who_can_pass_at_every_width() {
-  constexpr float kTick = 1.0f / 60.0f;
   std::mt19937 random(20261128);
   int passing = 0;
   int asked = 0;

@@ -97,7 +97,7 @@ struct SpringSystem {
   }
 };
 
-static std::vector<NodePair> grid(int side) {
+static std::vector<NodePair> pairs_of_grid(int side) {
   std::vector<NodePair> pairs;
   for (int y = 0; y < side; ++y)
     for (int x = 0; x < side; ++x) {
@@ -112,7 +112,7 @@ TYPED_TEST(BodyMatrixTest, SolvesLoopsOfStiffAndWeakSprings) {
   using Vector = typename BodyMatrix<D>::Vector;
   for (const unsigned seed : {1u, 2u, 3u}) {
     SpringSystem<D> system;
-    system.draw(25, grid(5), seed);
+    system.draw(25, pairs_of_grid(5), seed);
     ASSERT_TRUE(system.analyse(1 << 20));
     for (int turn = 0; turn < 2; ++turn) {  // The second time over what the first has left.
       system.assemble();
@@ -133,7 +133,7 @@ TYPED_TEST(BodyMatrixTest, SolvesTwoAtOnceToTheBitsOfOneAfterTheOther) {
   constexpr int D = TestFixture::kDim;
   using Matrix = BodyMatrix<D>;
   SpringSystem<D> system;
-  system.draw(25, grid(5), 9);
+  system.draw(25, pairs_of_grid(5), 9);
   ASSERT_TRUE(system.analyse(1 << 20));
   system.assemble();
   system.matrix.factor(system.steps);
@@ -192,7 +192,7 @@ static std::vector<typename BodyMatrix<D>::Vector> solve_in_two(SpringSystem<D>&
 TYPED_TEST(BodyMatrixTest, WhatWasPutLastIsSolvedAgainWithoutTheRest) {
   constexpr int D = TestFixture::kDim;
   SpringSystem<D> system;
-  system.draw(25, grid(5), 4);
+  system.draw(25, pairs_of_grid(5), 4);
   ASSERT_TRUE(system.analyse(1 << 20, {3, 12, 24}));
   const Range last = system.matrix.last_of(system.steps);
   ASSERT_EQ(last.end, system.steps.end);
@@ -230,7 +230,7 @@ TYPED_TEST(BodyMatrixTest, RefusesAnIslandThatCostsTooMuchAndKeepsTheNext) {
   constexpr int D = TestFixture::kDim;
   BodyMatrix<D> matrix;
   matrix.begin(30);
-  for (const NodePair& pair : grid(5)) matrix.join(pair.a, pair.b);
+  for (const NodePair& pair : pairs_of_grid(5)) matrix.join(pair.a, pair.b);
   for (int n = 26; n < 30; ++n) matrix.join(n - 1, n);
   Range dear{};
   EXPECT_FALSE(matrix.analyse({0, 25}, 30, dear));

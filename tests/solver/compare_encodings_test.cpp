@@ -4,9 +4,9 @@
 
 #include <bit>
 
-#include "solver/encoding.hpp"
 #include "solver/tracing/writes.hpp"
 #include "solver/world.hpp"
+#include "tests/solver/encoding_fixture.hpp"
 
 namespace cycloid::solver {
 namespace {
@@ -34,12 +34,6 @@ World<2> two_balls() {
   }
   for (int i = 0; i < 5; ++i) EXPECT_TRUE(world.step().ok());
   return world;
-}
-
-std::vector<std::byte> bytes_of(const WorldState<2>& state) {
-  std::vector<std::byte> bytes;
-  encode_state(state, bytes);
-  return bytes;
 }
 
 TEST(CompareEncodings, NamesTheNumberAndBothValues) {

@@ -143,7 +143,7 @@ TEST(Joints3D, AnAngularSpringReturnsToThePoseOfCreationWithinItsTorqueAndItsLim
   EXPECT_GT(swing_of(scene, id), 0.2f);
 }
 
-static float energy_of(const World<3>& world, BodyId id) {
+static float spin_energy_of(const World<3>& world, BodyId id) {
   const Body<3>& body = world.state().bodies[id.index];
   return 0.5f * dot(body.spin, world_inertia(body.inertia, body.rotation) * body.spin);
 }
@@ -170,10 +170,10 @@ TEST(Joints3D, WithoutAConeABodySwingsThroughTheOppositeWayUnhindered) {
     // Past it at a small distance, the twist leaps to its limit; that may cost spin, not give it.
     ASSERT_TRUE(scene.world.set_velocity(def.body_b, Vec<3>::zero(), spin + 0.1f * kAlong).ok());
     if (std::string_view(method.name) == "xpbd") continue;  // It turns what it corrects into speed.
-    const float most = 1.05f * energy_of(scene.world, def.body_b);
+    const float most = 1.05f * spin_energy_of(scene.world, def.body_b);
     for (int tick = 0; tick < 600; ++tick) {
       step(scene.world, 1);
-      ASSERT_LT(energy_of(scene.world, def.body_b), most) << method.name << tick;
+      ASSERT_LT(spin_energy_of(scene.world, def.body_b), most) << method.name << tick;
     }
   }
 }

@@ -74,7 +74,7 @@ static StepContext<2> soft_context(bool odd) {
   return context;
 }
 
-static void expect_near(const PlaneLanes& expected, const PlaneLanes& actual) {
+static void expect_lanes_near(const PlaneLanes& expected, const PlaneLanes& actual) {
   float one[4];
   float other[4];
   expected.store(one);
@@ -82,9 +82,9 @@ static void expect_near(const PlaneLanes& expected, const PlaneLanes& actual) {
   for (int lane = 0; lane < 4; ++lane) EXPECT_NEAR(one[lane], other[lane], 2.0e-5f);
 }
 
-static void expect_near(const MotionLanes<2, 4>& expected, const MotionLanes<2, 4>& actual) {
-  for (int i = 0; i < 2; ++i) expect_near(expected.velocity[i], actual.velocity[i]);
-  expect_near(expected.spin[0], actual.spin[0]);
+static void expect_lanes_near(const MotionLanes<2, 4>& expected, const MotionLanes<2, 4>& actual) {
+  for (int i = 0; i < 2; ++i) expect_lanes_near(expected.velocity[i], actual.velocity[i]);
+  expect_lanes_near(expected.spin[0], actual.spin[0]);
 }
 
 /// The same sweep row by row: each row reads and moves both bodies.
@@ -111,12 +111,13 @@ TEST(ContactPlane, SweepsBothPointsAsRowByRow) {
     const Sweep sweep = round % 4 < 2 ? Sweep::kBiased : Sweep::kRelax;
     sweep_row_by_row(context, sweep, by_row);
     sweep_along(context, sweep, along);
-    expect_near(by_row.a, along.a);
-    expect_near(by_row.b, along.b);
+    expect_lanes_near(by_row.a, along.a);
+    expect_lanes_near(by_row.b, along.b);
     for (int p = 0; p < 2; ++p) {
-      expect_near(by_row.block.points[p].normal_impulse, along.block.points[p].normal_impulse);
-      expect_near(by_row.block.points[p].tangent_impulse[0],
-                  along.block.points[p].tangent_impulse[0]);
+      expect_lanes_near(by_row.block.points[p].normal_impulse,
+                        along.block.points[p].normal_impulse);
+      expect_lanes_near(by_row.block.points[p].tangent_impulse[0],
+                        along.block.points[p].tangent_impulse[0]);
     }
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
@@ -129,8 +130,8 @@ TEST(ContactPlane, WarmStartsBothPointsAsOneByOne) {
     TouchingPairs along = one_by_one;
     warm_start_points(one_by_one.block, one_by_one.a, one_by_one.b);
     warm_start_along(along.block, along.a, along.b);
-    expect_near(one_by_one.a, along.a);
-    expect_near(one_by_one.b, along.b);
+    expect_lanes_near(one_by_one.a, along.a);
+    expect_lanes_near(one_by_one.b, along.b);
     ASSERT_FALSE(HasFailure()) << "round " << round;
   }
 }

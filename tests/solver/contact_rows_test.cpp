@@ -9,7 +9,7 @@ struct RowSetting {
   Tuning tuning;
 };
 
-static std::vector<RowSetting> settings() {
+static std::vector<RowSetting> row_settings() {
   std::vector<RowSetting> all = {{"soft_step", Tuning::soft_step()},
                                  {"pgs", Tuning::pgs()},
                                  {"split_impulse", Tuning::split_impulse()},
@@ -20,8 +20,8 @@ static std::vector<RowSetting> settings() {
   return all;
 }
 
-static std::vector<RowSetting> velocity_settings() {
-  std::vector<RowSetting> all = settings();
+static std::vector<RowSetting> row_velocity_settings() {
+  std::vector<RowSetting> all = row_settings();
   all.pop_back();
   return all;
 }
@@ -83,7 +83,7 @@ static void check_reduction(const RowSetting& setting, float aside) {
 }
 
 TEST(ReducedRows, AreNotBuiltAndChangeNothing) {
-  for (const RowSetting& setting : settings())
+  for (const RowSetting& setting : row_settings())
     for (const float aside : {0.0f, 0.05f}) {
       check_reduction<2>(setting, aside);
       check_reduction<3>(setting, aside);
@@ -115,13 +115,13 @@ static void check_rolling(const std::vector<RowSetting>& of) {
 }
 
 TEST(RollingResistance, SlowsABallByItsShareOfGravityUntilItRests) {
-  check_rolling<2>(velocity_settings());
-  check_rolling<3>(velocity_settings());
+  check_rolling<2>(row_velocity_settings());
+  check_rolling<3>(row_velocity_settings());
 }
 
 TEST(RollingResistance, SlowsABallUnderXpbdToo) {
-  check_rolling<2>({settings().back()});
-  check_rolling<3>({settings().back()});
+  check_rolling<2>({row_settings().back()});
+  check_rolling<3>({row_settings().back()});
 }
 
 template <int D>
@@ -146,13 +146,13 @@ static void check_slope(const std::vector<RowSetting>& of) {
 }
 
 TEST(RollingResistance, HoldsABallOnASlopeBelowItsAngle) {
-  check_slope<2>(velocity_settings());
-  check_slope<3>(velocity_settings());
+  check_slope<2>(row_velocity_settings());
+  check_slope<3>(row_velocity_settings());
 }
 
 TEST(RollingResistance, HoldsABallOnASlopeUnderXpbdToo) {
-  check_slope<2>({settings().back()});
-  check_slope<3>({settings().back()});
+  check_slope<2>({row_settings().back()});
+  check_slope<3>({row_settings().back()});
 }
 
 // Without resistance a ball that rolls without slip goes on as it is.
@@ -173,15 +173,15 @@ static void check_even_roll(const RowSetting& setting) {
 }
 
 TEST(Rolling, WithoutResistanceKeepsItsSpeed) {
-  for (const RowSetting& setting : velocity_settings()) {
+  for (const RowSetting& setting : row_velocity_settings()) {
     check_even_roll<2>(setting);
     check_even_roll<3>(setting);
   }
 }
 
 TEST(Rolling, WithoutResistanceKeepsItsSpeedUnderXpbdToo) {
-  check_even_roll<2>(settings().back());
-  check_even_roll<3>(settings().back());
+  check_even_roll<2>(row_settings().back());
+  check_even_roll<3>(row_settings().back());
 }
 
 }  // namespace cycloid::solver

@@ -2,8 +2,6 @@
 
 namespace cycloid::solver {
 
-constexpr float kTick = 1.0f / 60.0f;
-
 template <class T>
 class BothDimensions : public testing::Test {};
 template <int N>

@@ -13,7 +13,7 @@
 namespace cycloid::solver {
 
 /// Whole numbers of a quarter are drawn as often as any others: then axes tie and edges are flush.
-static float drawn(std::mt19937& random, float from, float to) {
+static float drawn_between(std::mt19937& random, float from, float to) {
   if (random() % 2 == 0) return std::uniform_real_distribution<float>(from, to)(random);
   const int quarters = static_cast<int>(4.0f * (to - from));
   return from + 0.25f * static_cast<float>(random() % static_cast<unsigned>(quarters + 1));
@@ -21,9 +21,9 @@ static float drawn(std::mt19937& random, float from, float to) {
 
 /// A box, a lozenge, a trapezium, a triangle, a polygon of five corners, a capsule or a ball; some
 /// are rounded.
-static ShapeDef<2> drawn_shape(std::mt19937& random) {
-  const float x = drawn(random, 0.25f, 1.5f);
-  const float y = drawn(random, 0.25f, 1.5f);
+static ShapeDef<2> drawn_few_cornered(std::mt19937& random) {
+  const float x = drawn_between(random, 0.25f, 1.5f);
+  const float y = drawn_between(random, 0.25f, 1.5f);
   ShapeDef<2> shape = box(x, y);
   switch (random() % 12) {
     case 0:
@@ -48,7 +48,7 @@ static ShapeDef<2> drawn_shape(std::mt19937& random) {
       break;
     case 8:
       shape = ball<2>(0.5f * x);
-      shape.points = {{{drawn(random, -0.5f, 0.5f), 0.0f}}};
+      shape.points = {{{drawn_between(random, -0.5f, 0.5f), 0.0f}}};
       return shape;
     default:
       break;
@@ -58,10 +58,10 @@ static ShapeDef<2> drawn_shape(std::mt19937& random) {
 }
 
 static Pose<2> drawn_pose(std::mt19937& random) {
-  const Vec<2> at = {{drawn(random, -1.5f, 1.5f), drawn(random, -1.5f, 1.5f)}};
+  const Vec<2> at = {{drawn_between(random, -1.5f, 1.5f), drawn_between(random, -1.5f, 1.5f)}};
   const float quarter_turns = 1.57079632679f * static_cast<float>(random() % 4);
   const bool is_straight = random() % 2 == 0;
-  const float angle = is_straight ? quarter_turns : drawn(random, -3.0f, 3.0f);
+  const float angle = is_straight ? quarter_turns : drawn_between(random, -3.0f, 3.0f);
   return {at, rotation_by(Spin<2>{{angle}})};
 }
 
@@ -74,11 +74,12 @@ struct Crowd {
 static void append_line(std::mt19937& random, Crowd& made) {
   const auto a = static_cast<std::uint32_t>(made.shapes.size());
   for (int i = 0; i < 2; ++i)
-    EXPECT_TRUE(append_shapes(capsule(drawn(random, 0.25f, 1.5f), 0.25f), 0, made.shapes).ok());
+    EXPECT_TRUE(
+        append_shapes(capsule(drawn_between(random, 0.25f, 1.5f), 0.25f), 0, made.shapes).ok());
   const Pose<2> pose_a = drawn_pose(random);
   Pose<2> pose_b = pose_a;
-  pose_b.position += rotate(pose_a.rotation, Vec<2>{{drawn(random, -4.0f, 4.0f), 0.0f}});
-  made.pairs.push_back({pose_a, pose_b, a, a + 1, drawn(random, 0.0f, 0.5f)});
+  pose_b.position += rotate(pose_a.rotation, Vec<2>{{drawn_between(random, -4.0f, 4.0f), 0.0f}});
+  made.pairs.push_back({pose_a, pose_b, a, a + 1, drawn_between(random, 0.0f, 0.5f)});
 }
 
 static Crowd crowd(std::mt19937& random, int count) {
@@ -90,9 +91,9 @@ static Crowd crowd(std::mt19937& random, int count) {
     }
     const auto a = static_cast<std::uint32_t>(made.shapes.size());
     for (int shape = 0; shape < 2; ++shape)
-      EXPECT_TRUE(append_shapes(drawn_shape(random), 0, made.shapes).ok());
+      EXPECT_TRUE(append_shapes(drawn_few_cornered(random), 0, made.shapes).ok());
     made.pairs.push_back(
-        {drawn_pose(random), drawn_pose(random), a, a + 1, drawn(random, 0.0f, 0.5f)});
+        {drawn_pose(random), drawn_pose(random), a, a + 1, drawn_between(random, 0.0f, 0.5f)});
   }
   return made;
 }

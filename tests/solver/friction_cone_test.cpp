@@ -38,7 +38,7 @@ struct ConeSetting {
   Tuning tuning;
 };
 
-static std::vector<ConeSetting> velocity_settings() {
+static std::vector<ConeSetting> cone_settings() {
   Tuning block = Tuning::soft_step();
   block.contact_block = ContactBlockRows::kNormals;
   Tuning coupled = Tuning::soft_step();
@@ -84,7 +84,7 @@ static Slide slide(const Tuning& tuning, const ShapeDef<3>& shape, double angle,
 // front: the four points slide as one, at mu g, and straight on.
 TEST(FrictionCone, SlowsASlidingBoxEquallyIn16DirectionsAndStraightOn) {
   constexpr double kPi = 3.14159265358979;
-  for (const ConeSetting& setting : velocity_settings())
+  for (const ConeSetting& setting : cone_settings())
     for (const Vec<3>& half : {Vec<3>{{0.5f, 0.5f, 0.5f}}, Vec<3>{{0.8f, 0.2f, 0.4f}}})
       for (int i = 0; i < 16; ++i) {
         ShapeDef<3> shape;

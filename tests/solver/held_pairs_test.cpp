@@ -7,7 +7,7 @@
 
 namespace cycloid::solver {
 
-static Vec<3> drawn(std::mt19937& random, float most) {
+static Vec<3> drawn_within_cube(std::mt19937& random, float most) {
   std::uniform_real_distribution<float> any(-most, most);
   return {{any(random), any(random), any(random)}};
 }
@@ -39,10 +39,11 @@ static Stones stones() {
 
 static void move_a_little(std::mt19937& random, float by, std::vector<Pose<3>>& poses) {
   for (Pose<3>& pose : poses) {
-    pose.position += drawn(random, by);
+    pose.position += drawn_within_cube(random, by);
     const double angle = static_cast<double>(by) * static_cast<double>(random() % 1000) / 500.0;
-    pose.rotation = normalized_or(compose(turn_about(drawn(random, 1.0f), angle), pose.rotation),
-                                  identity_rotation<3>());
+    pose.rotation =
+        normalized_or(compose(turn_about(drawn_within_cube(random, 1.0f), angle), pose.rotation),
+                      identity_rotation<3>());
   }
 }
 
@@ -80,7 +81,7 @@ static Told walk(float by, unsigned seed) {
   Told told;
   for (int tick = 0; tick < 3000; ++tick) {
     if (tick % 100 == 0)
-      for (Pose<3>& pose : made.poses) pose.position = drawn(random, 0.7f);
+      for (Pose<3>& pose : made.poses) pose.position = drawn_within_cube(random, 0.7f);
     move_a_little(random, by, made.poses);
     const float margin = tick % 7 == 0 ? 0.05f : 0.02f + 1.0e-4f * static_cast<float>(tick % 5);
     clear(now);
@@ -120,7 +121,7 @@ TEST(HeldPairs, ShowInNoBitHoweverFarBodiesMove) {
 TEST(HeldPairs, AreAskedForFromAnyKeyOn) {
   std::mt19937 random(11);
   Stones made = stones();
-  for (Pose<3>& pose : made.poses) pose.position = drawn(random, 0.6f);
+  for (Pose<3>& pose : made.poses) pose.position = drawn_within_cube(random, 0.6f);
   HeldPairs<3> before;
   const std::vector<PlacedPair<3>> pairs = all_pairs(made, 0.02f);
   PairMemory<3> first(made.state, HeldPairs<3>{}, 0, before);
@@ -150,7 +151,7 @@ static World<3> pile() {
     BodyDef<3> stone;
     ShapeDef<3> hull;
     hull.kind = ShapeKind::kHull;
-    for (int k = 0; k < 10; ++k) hull.points.push_back(drawn(random, 0.3f));
+    for (int k = 0; k < 10; ++k) hull.points.push_back(drawn_within_cube(random, 0.3f));
     stone.position = {{0.5f * static_cast<float>(i % 3), 1.0f + 0.4f * static_cast<float>(i / 3),
                        0.1f * static_cast<float>(i % 2)}};
     add(world, stone, hull);

@@ -10,7 +10,7 @@
 
 namespace cycloid::solver {
 
-static PolyhedronData hull_of(const Points& points) {
+static PolyhedronData built_hull(const Points& points) {
   PolyhedronData hull;
   const Error error = build_polyhedron(points, hull);
   EXPECT_TRUE(error.ok()) << error.field;
@@ -27,7 +27,7 @@ static void expect_refused(const Points& points) {
 
 TEST(HullBuilder, GivesABoxSixSquareFacesInTheOrderOfItsCorners) {
   const Points points = box_points(0.5f, 0.3f, 0.7f);
-  const PolyhedronData hull = hull_of(points);
+  const PolyhedronData hull = built_hull(points);
   expect_hull(hull, points);
   ASSERT_EQ(hull.vertices.size(), 8u);
   EXPECT_EQ(hull.faces.size(), 6u);
@@ -45,7 +45,7 @@ TEST(HullBuilder, GivesABoxSixSquareFacesInTheOrderOfItsCorners) {
 }
 
 TEST(HullBuilder, SortsHalfEdgesByTheirCorners) {
-  const PolyhedronData hull = hull_of(icosahedron_points(1.0f));
+  const PolyhedronData hull = built_hull(icosahedron_points(1.0f));
   for (std::size_t e = 0; e < hull.edges.size(); e += 2) {
     EXPECT_LT(hull.edges[e].origin, hull.edges[e + 1].origin);
     if (e == 0) continue;
@@ -59,11 +59,11 @@ TEST(HullBuilder, SortsHalfEdgesByTheirCorners) {
 }
 
 TEST(HullBuilder, CountsTheFacesOfRegularSolids) {
-  EXPECT_EQ(hull_of(octahedron_points(2.0f)).faces.size(), 8u);
-  EXPECT_EQ(hull_of(icosahedron_points(0.2f)).faces.size(), 20u);
+  EXPECT_EQ(built_hull(octahedron_points(2.0f)).faces.size(), 8u);
+  EXPECT_EQ(built_hull(icosahedron_points(0.2f)).faces.size(), 20u);
   for (int sides = 3; sides <= 32; ++sides) {
     const Points points = prism_points(sides, 1.0f, 0.5f);
-    const PolyhedronData hull = hull_of(points);
+    const PolyhedronData hull = built_hull(points);
     expect_hull(hull, points);
     EXPECT_EQ(hull.faces.size(), static_cast<std::size_t>(sides) + 2) << sides;
     EXPECT_EQ(hull.vertices.size(), static_cast<std::size_t>(2 * sides));
@@ -76,7 +76,7 @@ TEST(HullBuilder, DropsInnerRepeatedCollinearAndCoplanarPoints) {
     points.push_back({{0.3f * static_cast<float>(i % 6), 0.3f * static_cast<float>(i / 6 % 6),
                        0.3f * static_cast<float>(i / 36)}});
   points.insert(points.end(), points.begin(), points.begin() + 40);
-  const PolyhedronData hull = hull_of(points);
+  const PolyhedronData hull = built_hull(points);
   expect_hull(hull, points);
   EXPECT_EQ(hull.vertices.size(), 8u);
   EXPECT_EQ(hull.faces.size(), 6u);
@@ -84,7 +84,7 @@ TEST(HullBuilder, DropsInnerRepeatedCollinearAndCoplanarPoints) {
 
 /// A body frame turned and moved, as a modelling program would leave it: nothing is coplanar to the
 /// last bit any more.
-static Points moved(Points points, const Rotation<3>& rotation, const Vec<3>& by) {
+static Points carried_by(Points points, const Rotation<3>& rotation, const Vec<3>& by) {
   for (Vec<3>& p : points) p = by + rotate(rotation, p);
   return points;
 }
@@ -102,13 +102,13 @@ TEST(HullBuilder, MergesFacesThatRoundingMadeUneven) {
         Rotation<3>{{within_one(random), within_one(random), within_one(random), 1.0f}},
         identity_rotation<3>());
     const Vec<3> by = {{within_one(random), within_one(random), within_one(random)}};
-    const Points box = moved(grid, rotation, by);
-    const PolyhedronData hull = hull_of(box);
+    const Points box = carried_by(grid, rotation, by);
+    const PolyhedronData hull = built_hull(box);
     ASSERT_NO_FATAL_FAILURE(expect_hull(hull, box));
     EXPECT_EQ(hull.vertices.size(), 8u) << run;
     EXPECT_EQ(hull.faces.size(), 6u) << run;
-    const Points prism = moved(prism_points(12, 0.5f, 1.0f), rotation, by);
-    EXPECT_EQ(hull_of(prism).faces.size(), 14u) << run;
+    const Points prism = carried_by(prism_points(12, 0.5f, 1.0f), rotation, by);
+    EXPECT_EQ(built_hull(prism).faces.size(), 14u) << run;
   }
 }
 
@@ -215,16 +215,16 @@ TEST(HullBuilder, RefusesWhatSpansNoVolume) {
 TEST(HullBuilder, TakesTheThinnestAndTheLargestThatItPromises) {
   for (const float size : {1.0e-4f, 1.0e-2f, 1.0f, 1.0e3f, 1.0e6f}) {
     const Points points = box_points(size, size, size);
-    expect_hull(hull_of(points), points);
+    expect_hull(built_hull(points), points);
   }
   const Points plate = box_points(5.0f, 0.0006f, 5.0f);
-  const PolyhedronData hull = hull_of(plate);
+  const PolyhedronData hull = built_hull(plate);
   expect_hull(hull, plate);
   EXPECT_EQ(hull.faces.size(), 6u);
 }
 
 TEST(HullBuilder, TakesSixtyFourCornersAndNoMore) {
-  EXPECT_EQ(hull_of(sphere_points(64, 1.0f)).vertices.size(), 64u);
+  EXPECT_EQ(built_hull(sphere_points(64, 1.0f)).vertices.size(), 64u);
   expect_refused(sphere_points(65, 1.0f));
   expect_refused(sphere_points(256, 1.0f));
 }
@@ -233,9 +233,9 @@ TEST(HullBuilder, MakesTheSameFacesWhateverTheOrderOfThePoints) {
   std::mt19937 random(3);
   for (int run = 0; run < 100; ++run) {
     Points points = cloud(0, random);
-    const PolyhedronData hull = hull_of(points);
+    const PolyhedronData hull = built_hull(points);
     std::shuffle(points.begin(), points.end(), random);
-    const PolyhedronData other = hull_of(points);
+    const PolyhedronData other = built_hull(points);
     EXPECT_EQ(hull.vertices.size(), other.vertices.size());
     ASSERT_EQ(hull.faces.size(), other.faces.size());
     for (const PolyhedronFace& face : hull.faces) {
@@ -251,7 +251,7 @@ TEST(HullBuilder, ChoosesTheFirstOfEqualPoints) {
   Points points = box_points(1, 1, 1);
   points.insert(points.begin(), points[5]);
   points.push_back(points[2]);
-  const PolyhedronData hull = hull_of(points);
+  const PolyhedronData hull = built_hull(points);
   ASSERT_EQ(hull.vertices.size(), 8u);
   EXPECT_EQ(length(hull.vertices[0].position - points[0]), 0.0f);
 }

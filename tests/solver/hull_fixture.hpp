@@ -14,6 +14,13 @@ namespace cycloid::solver {
 
 using Points = std::vector<Vec<3>>;
 
+inline ShapeDef<3> hull_def(const Points& points) {
+  ShapeDef<3> shape;
+  shape.kind = ShapeKind::kHull;
+  shape.points = points;
+  return shape;
+}
+
 inline Points box_points(float x, float y, float z) {
   Points points;
   for (int i = 0; i < 8; ++i)

@@ -1,9 +1,9 @@
 #include <functional>
 #include <random>
 
-#include "solver/constraints/rows.hpp"
 #include "solver/motion.hpp"
 #include "solver/trig.hpp"
+#include "tests/solver/jacobian_fixture.hpp"
 #include "tests/solver/world_fixture.hpp"
 
 namespace cycloid::solver {
@@ -13,9 +13,6 @@ namespace cycloid::solver {
 /// Rotation rows of space are the first order of C and the directions across a slider turn about
 /// it, so both are compared where C = 0; an ellipse's distance is exact on the curve, so there.
 
-constexpr float kEps = 2.0e-3f;
-constexpr float kTolerance = 2.0e-3f;
-
 template <int D>
 struct JointPose {
   Vec<D> position_a;
@@ -23,14 +20,6 @@ struct JointPose {
   Rotation<D> rotation_a;
   Rotation<D> rotation_b;
 };
-
-template <int N>
-static Vec<N> random_vec(std::mt19937& random, float size) {
-  std::uniform_real_distribution<float> in(-size, size);
-  Vec<N> v;
-  for (int i = 0; i < N; ++i) v[i] = in(random);
-  return v;
-}
 
 template <int D>
 static JointPose<D> random_pose(std::mt19937& random) {
@@ -60,14 +49,6 @@ static JointPose<D> moved(JointPose<D> pose, int freedom, float eps) {
 }
 
 template <int D>
-static float entry(const Row<D>& row, int freedom) {
-  const bool of_b = freedom >= Dim<D>::kFreedoms;
-  const int i = freedom % Dim<D>::kFreedoms;
-  if (i < D) return of_b ? row.linear_b[i] : row.linear_a[i];
-  return of_b ? row.angular_b[i - D] : row.angular_a[i - D];
-}
-
-template <int D>
 static JointRows<D> rows_at(const WorldState<D>& state, const Joint<D>& joint,
                             const JointPose<D>& pose) {
   JointRows<D> rows;
@@ -91,13 +72,13 @@ static void expect_exact(const WorldState<D>& state, const Joint<D>& joint,
                          const JointPose<D>& pose) {
   const JointRows<D> rows = rows_at(state, joint, pose);
   for (int freedom = 0; freedom < 2 * Dim<D>::kFreedoms; ++freedom) {
-    const JointPose<D> forth = moved(pose, freedom, kEps);
-    const JointPose<D> back = moved(pose, freedom, -kEps);
+    const JointPose<D> forth = moved(pose, freedom, kDifference);
+    const JointPose<D> back = moved(pose, freedom, -kDifference);
     const JointRows<D> ahead = rows_at(state, joint, forth);
     const JointRows<D> behind = rows_at(state, joint, back);
     const auto compare = [&](const Row<D>& row, float after, float before, const char* name) {
-      const float slope = (after - before) / (2.0f * kEps);
-      EXPECT_NEAR(entry(row, freedom), slope, kTolerance * std::max(1.0f, std::abs(slope)))
+      const float slope = (after - before) / (2.0f * kDifference);
+      EXPECT_NEAR(entry(row, freedom), slope, kSlopeTolerance * std::max(1.0f, std::abs(slope)))
           << name << " by freedom " << freedom << " of kind " << static_cast<int>(joint.kind);
     };
     for (int i = 0; i < rows.count; ++i) {

@@ -103,7 +103,7 @@ TEST(Pulley, AcceleratesAsAtwoodsMachine) {
 }
 
 // Pythagoras by hand: the distance of a point from each wire.
-static double distance_from(CurveKind curve, double x, double y) {
+static double distance_from_wire(CurveKind curve, double x, double y) {
   if (curve == CurveKind::kCircle) return std::abs(std::hypot(x, y) - 1.0);
   double best = 1.0e9;
   for (int i = 0; i <= 20000; ++i) {
@@ -147,7 +147,7 @@ TEST(Curve, BeadStaysOnTheWireWhileItFallsAlongIt) {
         const BodyView<2> now = view(scene.world, bead);
         fastest = std::max(fastest, length(now.velocity));
         if (i % 5 != 0) continue;
-        ASSERT_LT(distance_from(start.curve, now.position[0], now.position[1]), 0.002)
+        ASSERT_LT(distance_from_wire(start.curve, now.position[0], now.position[1]), 0.002)
             << method.name << " curve " << static_cast<int>(start.curve) << " tick " << i;
       }
       EXPECT_GT(fastest, 2.0f) << method.name;  // It did fall.

@@ -8,7 +8,6 @@
 
 namespace cycloid::solver {
 
-inline constexpr float kTick = 1.0f / 60.0f;
 inline constexpr float kPi2 = 6.28318530718f;
 
 /// A named setting, with sleeping off.
@@ -82,14 +81,6 @@ struct Scene {
   World<D> world;
   BodyId anchor;
 };
-
-template <int D>
-Vec<D> at(float x, float y) {
-  Vec<D> p = Vec<D>::zero();
-  p[0] = x;
-  p[1] = y;
-  return p;
-}
 
 /// Steps with a constant force on one body.
 template <int D>

@@ -1,15 +1,13 @@
 #include <random>
 
 #include "solver/trig.hpp"
+#include "tests/solver/jacobian_fixture.hpp"
 #include "tests/solver/joint_scene_3d.hpp"
 
 namespace cycloid::solver {
 
 /// Rows of hinges, wheels and cone-twists: Jacobians against central differences of the errors, and
 /// swing and twist where they are nearly undefined.
-
-constexpr float kEps = 2.0e-3f;
-constexpr float kTolerance = 2.0e-3f;
 
 /// Bodies 0 and 1 of a state, as a joint sees them.
 struct JointedPair {
@@ -44,45 +42,24 @@ struct JointedPair {
   }
 };
 
-static Vec<3> random_vec(std::mt19937& random, float size) {
-  std::uniform_real_distribution<float> in(-size, size);
-  Vec<3> v;
-  for (float& value : v.v) value = in(random);
-  return v;
-}
-
 static JointedPair random_pair(JointKind kind, std::mt19937& random) {
   JointedPair pair;
   pair.joint.kind = kind;
   pair.joint.body_b = 1;
-  pair.joint.anchor_a = random_vec(random, 0.8f);
-  pair.joint.anchor_b = random_vec(random, 0.8f);
-  pair.joint.axis = normalized_or(random_vec(random, 1.0f), up<3>());
+  pair.joint.anchor_a = random_vec<3>(random, 0.8f);
+  pair.joint.anchor_b = random_vec<3>(random, 0.8f);
+  pair.joint.axis = normalized_or(random_vec<3>(random, 1.0f), up<3>());
   Vec<3> across[2];
   tangents(pair.joint.axis, across);
   pair.joint.axle = normalized_or(across[0] + 0.4f * across[1], across[0]);
   pair.joint.steering = 0.5f;
-  pair.joint.reference = rotation_by(random_vec(random, 1.0f));
+  pair.joint.reference = rotation_by(random_vec<3>(random, 1.0f));
   pair.joint.limit_enabled = 1;
   for (std::size_t i = 0; i < 2; ++i) {
-    pair.position[i] = random_vec(random, 2.0f);
-    pair.rotation[i] = rotation_by(random_vec(random, 1.5f));
+    pair.position[i] = random_vec<3>(random, 2.0f);
+    pair.rotation[i] = rotation_by(random_vec<3>(random, 1.5f));
   }
   return pair;
-}
-
-static float entry(const Row<3>& row, int freedom) {
-  const int i = freedom % 3;
-  switch (freedom / 3) {
-    case 0:
-      return row.linear_a[i];
-    case 1:
-      return row.angular_a[i];
-    case 2:
-      return row.linear_b[i];
-    default:
-      return row.angular_b[i];
-  }
 }
 
 /// `error_of` gives the C of which `row` is to be the derivative.
@@ -91,9 +68,9 @@ static void expect_derivative(const JointedPair& pair, const Row<3>& row, ErrorO
                               const char* name) {
   for (int freedom = 0; freedom < 12; ++freedom) {
     const float slope =
-        (error_of(pair.moved(freedom, kEps)) - error_of(pair.moved(freedom, -kEps))) /
-        (2.0f * kEps);
-    EXPECT_NEAR(entry(row, freedom), slope, kTolerance * std::max(1.0f, std::abs(slope)))
+        (error_of(pair.moved(freedom, kDifference)) - error_of(pair.moved(freedom, -kDifference))) /
+        (2.0f * kDifference);
+    EXPECT_NEAR(entry(row, freedom), slope, kSlopeTolerance * std::max(1.0f, std::abs(slope)))
         << name << " by freedom " << freedom << " of kind " << static_cast<int>(pair.joint.kind);
   }
 }

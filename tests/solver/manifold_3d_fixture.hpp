@@ -24,6 +24,14 @@ inline Shape<3> solid_box(float x, float y, float z) {
   return shape;
 }
 
+inline const Shape<3> kCube = solid_box(0.5f, 0.5f, 0.5f);
+inline const double kRight = std::acos(0.0);  ///< A right angle, rad.
+
+inline Manifold<3> meet(const Shape<3>& a, const Pose<3>& pose_a, const Shape<3>& b,
+                        const Pose<3>& pose_b, float margin = 0.02f) {
+  return collide(a, pose_a, b, pose_b, margin, {});
+}
+
 inline Rotation<3> turn_about(const Vec<3>& axis, double angle) {
   const Vec<3> unit = normalized_or(axis, Vec<3>{{1.0f, 0.0f, 0.0f}});
   const auto s = static_cast<float>(std::sin(0.5 * angle));

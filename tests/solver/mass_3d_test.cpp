@@ -14,14 +14,7 @@ struct Exact {
   double inertia[9] = {};
 };
 
-static ShapeDef<3> hull(const Points& points) {
-  ShapeDef<3> shape;
-  shape.kind = ShapeKind::kHull;
-  shape.points = points;
-  return shape;
-}
-
-static MassProperties<3> mass_of(const std::vector<ShapeDef<3>>& defs, float density) {
+static MassProperties<3> mass_of_shapes(const std::vector<ShapeDef<3>>& defs, float density) {
   std::vector<Shape<3>> shapes;
   Polyhedra hulls;
   for (const ShapeDef<3>& def : defs) EXPECT_TRUE(append_shapes(def, 0, shapes, hulls).ok());
@@ -48,11 +41,12 @@ TEST(MassOfHull, IsThatOfTheBox) {
   const float mass = 3.0f * 8.0f * x * y * z;
   const Vec<3> moments = {{mass / 3.0f * (y * y + z * z), mass / 3.0f * (z * z + x * x),
                            mass / 3.0f * (x * x + y * y)}};
-  expect_moments(mass_of({hull(box_points(x, y, z))}, 3.0f), mass, Vec<3>::zero(), moments);
+  expect_moments(mass_of_shapes({hull_def(box_points(x, y, z))}, 3.0f), mass, Vec<3>::zero(),
+                 moments);
   ShapeDef<3> box;
   box.kind = ShapeKind::kBox;
   box.half = {{x, y, z}};
-  expect_moments(mass_of({box}, 3.0f), mass, Vec<3>::zero(), moments);
+  expect_moments(mass_of_shapes({box}, 3.0f), mass, Vec<3>::zero(), moments);
 }
 
 /// Of edge a: V = a^3 / (6 sqrt 2), I = m a^2 / 20.
@@ -61,14 +55,15 @@ TEST(MassOfHull, IsThatOfTheRegularTetrahedron) {
   const double a = std::sqrt(8.0);
   const double mass = 2.0 * a * a * a / (6.0 * std::sqrt(2.0));
   const auto moment = static_cast<float>(mass * a * a / 20.0);
-  expect_moments(mass_of({hull(points)}, 2.0f), mass, Vec<3>::zero(), {{moment, moment, moment}});
+  expect_moments(mass_of_shapes({hull_def(points)}, 2.0f), mass, Vec<3>::zero(),
+                 {{moment, moment, moment}});
 }
 
 /// With legs along the axes the centre is at a quarter and I_xx = 3 m (b^2 + c^2) / 80.
 TEST(MassOfHull, IsThatOfACornerCutOffABox) {
   const float a = 1.0f, b = 2.0f, c = 0.5f;
   const MassProperties<3> properties =
-      mass_of({hull({{{0, 0, 0}}, {{a, 0, 0}}, {{0, b, 0}}, {{0, 0, c}}})}, 1.0f);
+      mass_of_shapes({hull_def({{{0, 0, 0}}, {{a, 0, 0}}, {{0, b, 0}}, {{0, 0, c}}})}, 1.0f);
   const float mass = a * b * c / 6.0f;
   EXPECT_NEAR(properties.mass, mass, 1e-5f * mass);
   EXPECT_NEAR(properties.first[0] / mass, 0.25f * a, 1e-5f);
@@ -90,13 +85,13 @@ TEST(MassOfHull, IsThatOfOctahedronAndIcosahedron) {
   const double r = 0.7f;
   double mass = 4.0 / 3.0 * r * r * r;
   auto moment = static_cast<float>(mass * r * r / 5.0);
-  expect_moments(mass_of({hull(octahedron_points(0.7f))}, 1.0f), mass, Vec<3>::zero(),
+  expect_moments(mass_of_shapes({hull_def(octahedron_points(0.7f))}, 1.0f), mass, Vec<3>::zero(),
                  {{moment, moment, moment}});
   const double a = 2.0 * double{0.3f};
   const double g = 0.5 * (1.0 + std::sqrt(5.0));
   mass = 5.0 * (3.0 + std::sqrt(5.0)) * a * a * a / 12.0;
   moment = static_cast<float>(mass * a * a * g * g / 10.0);
-  expect_moments(mass_of({hull(icosahedron_points(0.3f))}, 1.0f), mass, Vec<3>::zero(),
+  expect_moments(mass_of_shapes({hull_def(icosahedron_points(0.3f))}, 1.0f), mass, Vec<3>::zero(),
                  {{moment, moment, moment}});
 }
 
@@ -108,8 +103,8 @@ TEST(MassOfHull, IsThatOfRegularPrisms) {
     const double mass = n * r * r * std::sin(2.0 * M_PI / n) * h;
     const double along = mass * r * r / 6.0 * (2.0 + std::cos(2.0 * M_PI / n));
     const auto across = static_cast<float>(0.5 * along + mass * h * h / 3.0);
-    expect_moments(mass_of({hull(prism_points(n, 0.5f, 0.8f))}, 1.0f), mass, Vec<3>::zero(),
-                   {{across, static_cast<float>(along), across}});
+    expect_moments(mass_of_shapes({hull_def(prism_points(n, 0.5f, 0.8f))}, 1.0f), mass,
+                   Vec<3>::zero(), {{across, static_cast<float>(along), across}});
   }
 }
 
@@ -156,7 +151,7 @@ TEST(MassOfHull, OfSixtyFourPointsOnASphereIsThatOfItsFacesInDouble) {
   PolyhedronData data;
   ASSERT_TRUE(build_polyhedron(points, data).ok());
   const Exact exact = exact_of(data);
-  const MassProperties<3> properties = mass_of({hull(points)}, 1.0f);
+  const MassProperties<3> properties = mass_of_shapes({hull_def(points)}, 1.0f);
   EXPECT_NEAR(properties.mass / exact.volume, 1.0, 1e-5);
   for (int i = 0; i < 3; ++i)
     EXPECT_NEAR(properties.first[i] / properties.mass - data.middle[i], exact.centre[i], 5e-6);
@@ -179,7 +174,7 @@ TEST(MassOfCapsule, IsCylinderAndTwoHalfBalls) {
   const double arm = 0.5 * h + 0.375 * r;
   const double across =
       tube * (r * r / 4.0 + h * h / 12.0) + ball * (83.0 / 320.0 * r * r + arm * arm);
-  expect_moments(mass_of({capsule}, 2.0f), 2.0 * (tube + ball), Vec<3>::zero(),
+  expect_moments(mass_of_shapes({capsule}, 2.0f), 2.0 * (tube + ball), Vec<3>::zero(),
                  {{static_cast<float>(2.0 * across), static_cast<float>(2.0 * along),
                    static_cast<float>(2.0 * across)}});
 }
@@ -189,19 +184,20 @@ TEST(MassOfCompound, OfTwoHalvesIsThatOfTheWhole) {
   Points right = left;
   for (Vec<3>& p : left) p[0] -= 0.25f;
   for (Vec<3>& p : right) p[0] += 0.25f;
-  const MassProperties<3> whole = mass_of({hull(box_points(0.5f, 0.3f, 0.4f))}, 1.0f);
+  const MassProperties<3> whole = mass_of_shapes({hull_def(box_points(0.5f, 0.3f, 0.4f))}, 1.0f);
   const Inertia<3> inertia = central_inertia(whole);
-  expect_moments(mass_of({hull(left), hull(right)}, 1.0f), whole.mass, Vec<3>::zero(),
-                 {{inertia.m[0], inertia.m[4], inertia.m[8]}});
+  expect_moments(mass_of_shapes({hull_def(left), hull_def(right)}, 1.0f), whole.mass,
+                 Vec<3>::zero(), {{inertia.m[0], inertia.m[4], inertia.m[8]}});
 }
 
 /// As mass.hpp states: 5e-7 (d / s)^2, here with d^2 = 2 distance^2.
 TEST(MassOfHull, FarFromTheOriginKeepsThePrecisionThatIsStated) {
-  const Inertia<3> near = central_inertia(mass_of({hull(box_points(0.5f, 0.5f, 0.5f))}, 1.0f));
+  const Inertia<3> near =
+      central_inertia(mass_of_shapes({hull_def(box_points(0.5f, 0.5f, 0.5f))}, 1.0f));
   for (const float distance : {10.0f, 100.0f}) {
     Points points = box_points(0.5f, 0.5f, 0.5f);
     for (Vec<3>& p : points) p += Vec<3>{{distance, 0.0f, -distance}};
-    const Inertia<3> far = central_inertia(mass_of({hull(points)}, 1.0f));
+    const Inertia<3> far = central_inertia(mass_of_shapes({hull_def(points)}, 1.0f));
     const float bound = 5e-7f * 2.0f * distance * distance;
     for (int i = 0; i < 9; ++i) EXPECT_NEAR(far.m[i], near.m[i], bound * near.m[0]) << distance;
   }
@@ -212,9 +208,9 @@ TEST(MassOfHull, KeepsItsMomentsWhenTurned) {
   const Rotation<3> q =
       normalized_or(Rotation<3>{{0.3f, -0.2f, 0.5f, 0.8f}}, identity_rotation<3>());
   Points points = box_points(0.2f, 0.5f, 1.0f);
-  const Inertia<3> straight = central_inertia(mass_of({hull(points)}, 1.0f));
+  const Inertia<3> straight = central_inertia(mass_of_shapes({hull_def(points)}, 1.0f));
   for (Vec<3>& p : points) p = rotate(q, p);
-  const Inertia<3> turned = central_inertia(mass_of({hull(points)}, 1.0f));
+  const Inertia<3> turned = central_inertia(mass_of_shapes({hull_def(points)}, 1.0f));
   const Inertia<3> expected = world_inertia(straight, q);
   for (int i = 0; i < 9; ++i) EXPECT_NEAR(turned.m[i], expected.m[i], 1e-5f * straight.m[0]);
 }
@@ -223,7 +219,7 @@ TEST(InverseInertia, IsThereForAMillimetreCubeAndForAMountain) {
   for (const float half : {0.5e-3f, 1.0f, 2.0e3f}) {
     World<3> world = make_world<3>();
     BodyDef<3> def;
-    const BodyId id = add(world, def, hull(box_points(half, half, half)));
+    const BodyId id = add(world, def, hull_def(box_points(half, half, half)));
     const Body<3>& body = world.state().bodies[id.index];
     const float moment = body.mass * 2.0f / 3.0f * half * half;
     EXPECT_NEAR(body.inverse_inertia.m[0] * moment, 1.0f, 1e-4f) << half;

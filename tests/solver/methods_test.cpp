@@ -9,14 +9,12 @@ namespace cycloid::solver {
 
 /// What each named setting of the solver promises.
 
-constexpr float kTick = 1.0f / 60.0f;
-
 struct Setting {
   const char* name;
   Tuning tuning;
 };
 
-static std::vector<Setting> settings() {
+static std::vector<Setting> method_settings() {
   std::vector<Setting> all = {{"soft_step", Tuning::soft_step()},
                               {"pgs", Tuning::pgs()},
                               {"split_impulse", Tuning::split_impulse()},
@@ -29,29 +27,6 @@ static std::vector<Setting> settings() {
   return all;
 }
 
-template <int D>
-static WorldDef<D> def_with(const Tuning& tuning, Material material = {}) {
-  WorldDef<D> def = with_gravity<D>(material);
-  def.tuning = tuning;
-  return def;
-}
-
-template <int D>
-static Vec<D> at(float x, float y) {
-  Vec<D> p = Vec<D>::zero();
-  p[0] = x;
-  p[1] = y;
-  return p;
-}
-
-static std::vector<BodyId> add_stack(World<2>& world, int count) {
-  add_ground<2>(world, up<2>());
-  std::vector<BodyId> boxes;
-  for (int i = 0; i < count; ++i)
-    boxes.push_back(add_at<2>(world, {{0.0f, 0.5f + static_cast<float>(i)}}, box(0.5f, 0.5f)));
-  return boxes;
-}
-
 static bool soft_at_60_hertz(const Setting& setting) {
   return setting.tuning.stabilisation == Stabilisation::kSoft && setting.tuning.substeps == 1;
 }
@@ -61,6 +36,7 @@ static bool soft_at_60_hertz(const Setting& setting) {
 /// rest on the slop, where the method has one.
 static void check_stack(const Setting& setting, float sag, float speed = 0.01f) {
   World<2> world = make_world(def_with<2>(setting.tuning));
+  add_ground<2>(world, up<2>());
   const std::vector<BodyId> boxes = add_stack(world, 5);
   step(world, 300);
   for (std::size_t i = 0; i < boxes.size(); ++i) {
@@ -75,7 +51,7 @@ static void check_stack(const Setting& setting, float sag, float speed = 0.01f) 
 }
 
 TEST(Methods, EachHoldsAStackOfFiveBoxes) {
-  for (const Setting& setting : settings()) {
+  for (const Setting& setting : method_settings()) {
     if (setting.tuning.stabilisation == Stabilisation::kXpbd) continue;
     // At one substep a contact's spring is held to 7.5 Hz, and sags under four boxes by 0.06 m.
     check_stack(setting, soft_at_60_hertz(setting) ? 0.15f : 0.035f);
@@ -85,7 +61,7 @@ TEST(Methods, EachHoldsAStackOfFiveBoxes) {
 // Its velocities are displacements of a substep, so they keep the noise of the projection; with
 // fewer substeps, or one position sweep each, the stack drifts apart in a minute, as published.
 TEST(Methods, XpbdHoldsAStackOfFiveBoxesInSixteenSubstepsOfFourSweeps) {
-  Setting setting = settings().back();
+  Setting setting = method_settings().back();
   setting.tuning.substeps = 16;
   setting.tuning.position_sweeps = 4;
   check_stack(setting, 0.03f, 0.3f);
@@ -93,7 +69,7 @@ TEST(Methods, XpbdHoldsAStackOfFiveBoxesInSixteenSubstepsOfFourSweeps) {
 
 template <int D>
 static void check_chain() {
-  for (const Setting& setting : settings()) {
+  for (const Setting& setting : method_settings()) {
     World<D> world = make_world(def_with<D>(setting.tuning));
     BodyDef<D> fixed;
     fixed.kind = BodyKind::kStatic;
@@ -131,7 +107,7 @@ TEST(Methods, EachHoldsAHangingChainOfTen) {
 
 // Baumgarte's bias leaves as speed, beta (d - slop) / h; pseudo-velocities and NGS leave none.
 TEST(Methods, OverlapLeavesWithBaumgartesSpeedOrWithNone) {
-  for (const Setting& setting : settings()) {
+  for (const Setting& setting : method_settings()) {
     World<2> world = make_world(def_with<2>(setting.tuning));
     ASSERT_TRUE(world.set_gravity({{0.0f, 0.0f}}).ok());
     add_ground<2>(world, up<2>());
@@ -176,7 +152,7 @@ TEST(SoftStep, LetsContactsOverlapByTheirLoadAlone) {
 }
 
 TEST(Ngs, ChangesNoBitOfASatisfiedState) {
-  for (const Setting& setting : settings()) {
+  for (const Setting& setting : method_settings()) {
     if (setting.tuning.stabilisation != Stabilisation::kNgs) continue;
     World<2> world = make_world(def_with<2>(setting.tuning));
     ASSERT_TRUE(world.set_gravity({{0.0f, 0.0f}}).ok());
@@ -249,12 +225,12 @@ static bool pairs_normals(const Setting& setting) {
 }
 
 TEST(Methods, EachGivesTheSameBitsOverWorkersAndLanes) {
-  for (const Setting& setting : settings())
+  for (const Setting& setting : method_settings())
     if (!pairs_normals(setting)) check_bits(setting);
 }
 
 TEST(Methods, EachGivesTheSameBitsInEveryOrderOverWorkersAndLanes) {
-  for (Setting setting : settings()) {
+  for (Setting setting : method_settings()) {
     if (pairs_normals(setting)) continue;
     std::vector<std::uint64_t> digests;
     for (const Order order : {Order::kId, Order::kReverse}) {
@@ -267,7 +243,7 @@ TEST(Methods, EachGivesTheSameBitsInEveryOrderOverWorkersAndLanes) {
 }
 
 TEST(BlockSolver, GivesTheSameBitsOverWorkersAndLanesWithFrictionToo) {
-  for (Setting setting : settings()) {
+  for (Setting setting : method_settings()) {
     setting.tuning.contact_block = ContactBlockRows::kNormalFriction;
     if (setting.tuning.stabilisation == Stabilisation::kXpbd) continue;  // Has no such rows.
     for (const Order order : {Order::kColor, Order::kId, Order::kReverse}) {
@@ -278,7 +254,7 @@ TEST(BlockSolver, GivesTheSameBitsOverWorkersAndLanesWithFrictionToo) {
 }
 
 TEST(BlockSolver, GivesTheSameBitsOverWorkersAndLanes) {
-  for (Setting setting : settings()) {
+  for (Setting setting : method_settings()) {
     setting.tuning.contact_block = ContactBlockRows::kNormals;
     if (setting.tuning.stabilisation == Stabilisation::kXpbd) continue;  // Has no such rows.
     for (const Order order : {Order::kColor, Order::kId, Order::kReverse}) {
@@ -321,6 +297,7 @@ TEST(SetTuning, OfOtherSubstepsMovesNoStackAtRest) {
   Tuning tuning = Tuning::soft_step();
   tuning.sleep_s = 0.0f;
   World<2> world = make_world(def_with<2>(tuning));
+  add_ground<2>(world, up<2>());
   const std::vector<BodyId> boxes = add_stack(world, 5);
   step(world, 600);
   // From 4 on a contact has its 30 Hz, so the stack has the same place to rest at.

@@ -233,7 +233,7 @@ static Vec<2> clip_and_integrate(Vec<2> position, Vec<2> velocity,
 }
 
 /// In double: how deep a position is in the deepest plane.
-static double deepest(const std::vector<CollisionPlane<2>>& planes, const Vec<2>& x) {
+static double depth_in_planes(const std::vector<CollisionPlane<2>>& planes, const Vec<2>& x) {
   double depth = -1.0e300;
   for (const CollisionPlane<2>& plane : planes)
     depth = std::max(depth, double{plane.offset} - double{plane.normal[0]} * x[0] -
@@ -253,15 +253,15 @@ TEST(VelocityClipping, LosesTheCornerWhereThePositionMoverDoesNot) {
     Vec<2> by_position = Vec<2>::zero();
     by_velocity = clip_and_integrate(by_velocity, {{speed, 0.0f}}, planes);
     const float expected = speed * kMoveTick * std::cos(a / 2) * std::cos(a) * std::sin(a);
-    EXPECT_NEAR(deepest(planes, by_velocity), expected, 1.0e-6) << angle_deg;
+    EXPECT_NEAR(depth_in_planes(planes, by_velocity), expected, 1.0e-6) << angle_deg;
     for (int tick = 1; tick < 60; ++tick)
       by_velocity = clip_and_integrate(by_velocity, {{speed, 0.0f}}, planes);
     for (int tick = 0; tick < 60; ++tick)
       by_position =
           solve_planes<2>(by_position + kMoveTick * Vec<2>{{speed, 0.0f}}, planes).position;
     // A second of walking into the corner: through it, and exactly at it.
-    EXPECT_GT(deepest(planes, by_velocity), 10.0f * expected) << angle_deg;
-    EXPECT_LE(deepest(planes, by_position), 1.0e-7) << angle_deg;
+    EXPECT_GT(depth_in_planes(planes, by_velocity), 10.0f * expected) << angle_deg;
+    EXPECT_LE(depth_in_planes(planes, by_position), 1.0e-7) << angle_deg;
     EXPECT_LE(length(by_position), 1.0e-6f) << angle_deg;
   }
 }
@@ -286,8 +286,8 @@ TEST(VelocityClipping, DriftsIntoAPlaneWhereThePositionMoverDoesNot) {
       by_velocity += kMoveTick * clipped;
       by_position = solve_planes<2>(by_position + kMoveTick * velocity, planes).position;
       if (tick != 1000 && tick != 10000 && tick != 100000) continue;
-      by_velocity_m[decade] = std::max(by_velocity_m[decade], deepest(planes, by_velocity));
-      by_position_m[decade] = std::max(by_position_m[decade], deepest(planes, by_position));
+      by_velocity_m[decade] = std::max(by_velocity_m[decade], depth_in_planes(planes, by_velocity));
+      by_position_m[decade] = std::max(by_position_m[decade], depth_in_planes(planes, by_position));
       ++decade;
     }
   }

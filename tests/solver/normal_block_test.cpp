@@ -11,8 +11,6 @@
 
 namespace cycloid::solver {
 
-constexpr float kTick = 1.0f / 60.0f;
-
 /// Where a manifold of a box lies under its centre, and how the box moves there.
 struct Load {
   double half_x = 0.5;

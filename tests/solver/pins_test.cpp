@@ -21,14 +21,6 @@ struct Scenario {
   float cone;
 };
 
-template <int D>
-static Vec<D> at(float x, float y) {
-  Vec<D> position = Vec<D>::zero();
-  position[0] = x;
-  position[1] = y;
-  return position;
-}
-
 /// How a chain's bodies move at the start: so that some limits are met soon and others never.
 template <int D>
 static BodyDef<D> link_at(int chain, int link) {

@@ -11,14 +11,7 @@
 
 namespace cycloid::solver {
 
-static ShapeDef<3> hull(const Points& points) {
-  ShapeDef<3> shape;
-  shape.kind = ShapeKind::kHull;
-  shape.points = points;
-  return shape;
-}
-
-static std::vector<std::byte> bytes_of(const World<3>& world) {
+static std::vector<std::byte> encoded(const World<3>& world) {
   std::vector<std::byte> bytes;
   world.encode(bytes);
   return bytes;
@@ -74,7 +67,7 @@ TEST(Polyhedra, AHullIsAboutTheMiddleOfItsBox) {
   World<3> world = make_world<3>();
   Points points = box_points(1.0f, 2.0f, 3.0f);
   for (Vec<3>& p : points) p += Vec<3>{{10.0f, 0.0f, -4.0f}};
-  const BodyId id = add(world, BodyDef<3>{}, hull(points));
+  const BodyId id = add(world, BodyDef<3>{}, hull_def(points));
   const Body<3>& body = world.state().bodies[id.index];
   const Shape<3>& shape = world.state().shapes[body.first_shape];
   EXPECT_EQ(shape.vertex_count, 1u);
@@ -89,12 +82,12 @@ TEST(Polyhedra, AHullIsAboutTheMiddleOfItsBox) {
 
 TEST(Polyhedra, ABodyDestroyedAndMadeAgainLeavesTheSameHulls) {
   World<3> world = make_world<3>();
-  add(world, BodyDef<3>{}, hull(octahedron_points(1.0f)));
-  const BodyId boxes[2] = {add(world, BodyDef<3>{}, hull(box_points(1, 2, 3))),
-                           add(world, BodyDef<3>{}, hull(box_points(1, 2, 3)))};
+  add(world, BodyDef<3>{}, hull_def(octahedron_points(1.0f)));
+  const BodyId boxes[2] = {add(world, BodyDef<3>{}, hull_def(box_points(1, 2, 3))),
+                           add(world, BodyDef<3>{}, hull_def(box_points(1, 2, 3)))};
   EXPECT_EQ(world.state().polyhedra.records.size(), 2u);
   EXPECT_EQ(world.state().polyhedra.records[1].references, 2u);
-  const std::vector<std::byte> before = bytes_of(world);
+  const std::vector<std::byte> before = encoded(world);
   const WorldState<3> saved = world.state();
 
   ASSERT_TRUE(world.destroy_body(boxes[1]).ok());
@@ -102,25 +95,25 @@ TEST(Polyhedra, ABodyDestroyedAndMadeAgainLeavesTheSameHulls) {
   ASSERT_TRUE(world.destroy_body(boxes[0]).ok());
   EXPECT_EQ(world.state().polyhedra.vertices.size(), 6u);
   EXPECT_TRUE(validate(world.state()).ok());
-  add(world, BodyDef<3>{}, hull(box_points(1, 2, 3)));
-  add(world, BodyDef<3>{}, hull(box_points(1, 2, 3)));
+  add(world, BodyDef<3>{}, hull_def(box_points(1, 2, 3)));
+  add(world, BodyDef<3>{}, hull_def(box_points(1, 2, 3)));
   // All but the generations of the two bodies is as before.
   WorldState<3> again = world.state();
   for (const BodyId id : boxes) again.bodies[id.index].generation = id.generation;
   world.restore(again);
-  EXPECT_EQ(bytes_of(world), before);
+  EXPECT_EQ(encoded(world), before);
   world.restore(saved);
-  EXPECT_EQ(bytes_of(world), before);
+  EXPECT_EQ(encoded(world), before);
 }
 
 TEST(Polyhedra, ARefusedBodyLeavesNoHull) {
   WorldDef<3> def;
   def.limits.shapes = 2;
   World<3> world = make_world(def);
-  add(world, BodyDef<3>{}, hull(box_points(1, 1, 1)));
-  const std::vector<std::byte> before = bytes_of(world);
-  const ShapeDef<3> good = hull(octahedron_points(1.0f));
-  ShapeDef<3> flat = hull(box_points(1.0f, 0.0f, 1.0f));
+  add(world, BodyDef<3>{}, hull_def(box_points(1, 1, 1)));
+  const std::vector<std::byte> before = encoded(world);
+  const ShapeDef<3> good = hull_def(octahedron_points(1.0f));
+  ShapeDef<3> flat = hull_def(box_points(1.0f, 0.0f, 1.0f));
   const std::vector<ShapeDef<3>> bad = {good, flat};
   const Error error = world.create_body(BodyDef<3>{}, bad).error();
   EXPECT_EQ(error.code, Code::kInvalid);
@@ -131,31 +124,31 @@ TEST(Polyhedra, ARefusedBodyLeavesNoHull) {
   BodyDef<3> light;
   light.mass = -1.0f;
   EXPECT_FALSE(world.create_body(light, std::span(&good, 1)).ok());
-  EXPECT_EQ(bytes_of(world), before);
+  EXPECT_EQ(encoded(world), before);
 }
 
 /// Hulls with a free slot before and between them, in another order than their records.
-static World<3> busy_world() {
+static World<3> world_with_free_slots() {
   World<3> world = make_world(with_gravity<3>());
   add_ground<3>(world, up<3>());
   std::vector<BodyId> ids;
   for (const Points& points : {box_points(0.5f, 0.5f, 0.5f), octahedron_points(0.5f),
                                prism_points(5, 0.5f, 0.5f), icosahedron_points(0.3f)})
     ids.push_back(
-        add_at<3>(world, {{2.0f * static_cast<float>(ids.size()), 0.6f, 0.0f}}, hull(points)));
+        add_at<3>(world, {{2.0f * static_cast<float>(ids.size()), 0.6f, 0.0f}}, hull_def(points)));
   EXPECT_TRUE(world.destroy_body(ids[0]).ok());
   EXPECT_TRUE(world.destroy_body(ids[2]).ok());
-  add_at<3>(world, {{0.0f, 2.0f, 0.0f}}, hull(box_points(0.4f, 0.5f, 0.6f)));
-  add_at<3>(world, {{0.1f, 0.5f, 0.0f}}, hull(box_points(0.4f, 0.5f, 0.6f)));
+  add_at<3>(world, {{0.0f, 2.0f, 0.0f}}, hull_def(box_points(0.4f, 0.5f, 0.6f)));
+  add_at<3>(world, {{0.1f, 0.5f, 0.0f}}, hull_def(box_points(0.4f, 0.5f, 0.6f)));
   return world;
 }
 
 TEST(Polyhedra, GoOnBitForBitFromBytes) {
-  World<3> world = busy_world();
+  World<3> world = world_with_free_slots();
   step(world, 5);
   World<3> other = make_world<3>();
-  ASSERT_TRUE(other.decode(bytes_of(world)).ok());
-  EXPECT_EQ(bytes_of(other), bytes_of(world));
+  ASSERT_TRUE(other.decode(encoded(world)).ok());
+  EXPECT_EQ(encoded(other), encoded(world));
   step(world, 20);
   step(other, 20);
   EXPECT_EQ(other.digest(), world.digest());
@@ -163,8 +156,8 @@ TEST(Polyhedra, GoOnBitForBitFromBytes) {
 }
 
 TEST(Polyhedra, EveryFlippedByteIsRefusedOrStepsWithoutHarm) {
-  const World<3> world = busy_world();
-  const std::vector<std::byte> good = bytes_of(world);
+  const World<3> world = world_with_free_slots();
+  const std::vector<std::byte> good = encoded(world);
   World<3> other = make_world<3>();
   int stepped = 0;
   for (std::size_t i = 0; i < good.size(); ++i)
@@ -182,7 +175,7 @@ TEST(Polyhedra, EveryFlippedByteIsRefusedOrStepsWithoutHarm) {
 /// What is wrong with the hulls of a state after `change`; "" where nothing is.
 template <class Change>
 static std::string judged(Change change) {
-  WorldState<3> state = busy_world().state();
+  WorldState<3> state = world_with_free_slots().state();
   change(state.polyhedra);
   const Error error = validate_polyhedra(state);
   EXPECT_TRUE(error.ok() || error.code == Code::kCorrupt);
@@ -195,7 +188,7 @@ TEST(Polyhedra, EveryWrongIndexOfASnapshotIsCorrupt) {
   const auto count = [&](auto& value) {
     words += std::is_integral_v<std::decay_t<decltype(value)>>;
   };
-  WorldState<3> state = busy_world().state();
+  WorldState<3> state = world_with_free_slots().state();
   const auto walk = [](Polyhedra& p, auto&& f) {
     for (Polyhedron& record : p.records) visit_words(record, f);
     for (PolyhedronVertex& vertex : p.vertices) visit_words(vertex, f);

@@ -189,7 +189,7 @@ TEST(SolidQueries, OverlapOfAHullProbeIsAsDeepAsItsFacesTell) {
   expect_near(hits[0].normal, {{-slant, -slant, -slant}});
 }
 
-static Shape<3> random_shape(std::mt19937& random, Polyhedra& pools) {
+static Shape<3> random_solid(std::mt19937& random, Polyhedra& pools) {
   const Vec<3> half = {
       {uniform(random, 0.05f, 1), uniform(random, 0.05f, 1), uniform(random, 0.05f, 1)}};
   switch (random() % 4) {
@@ -210,7 +210,7 @@ TEST(SolidQueries, CastsEndWhereTheSurfacesTouchAndNeverBeyond) {
   int hits = 0;
   for (int i = 0; i < 10000; ++i) {
     Polyhedra pools;
-    const Shape<3> shape = random_shape(random, pools);
+    const Shape<3> shape = random_solid(random, pools);
     const WorldState<3> state =
         state_of({{shape, {random_vector(random, 0.3f), random_rotation(random)}}}, pools);
     Probe<3> probe = ball_probe<3>(i % 2 == 0 ? 0.0f : 0.3f);
@@ -246,7 +246,7 @@ TEST(SolidQueries, QueriesOfOnePointAgree) {
   int rays = 0;
   for (int i = 0; i < 10000; ++i) {
     Polyhedra pools;
-    const Shape<3> shape = random_shape(random, pools);
+    const Shape<3> shape = random_solid(random, pools);
     const WorldState<3> state =
         state_of({{shape, {random_vector(random, 0.3f), random_rotation(random)}}}, pools);
     const Vec<3> from = random_vector(random, 3);

@@ -1,6 +1,7 @@
 #include <random>
 
 #include "tests/solver/query_fixture.hpp"
+#include "tests/solver/random_fixture.hpp"
 
 namespace cycloid::solver {
 
@@ -165,11 +166,6 @@ TEST(ClosestPoint, FromOutsideAndInside) {
   expect_near(inside->normal, {{1, 0}});
   EXPECT_EQ(closest_point(world.state(), {{3, 0}}, 5.0f, {})->body, left);
   EXPECT_FALSE(closest_point(world.state(), {{3, 0}}, 1.9f, {}));
-}
-
-/// Raw generator words alone: the distributions of <random> differ between libraries.
-static float uniform(std::mt19937& random, float lower, float upper) {
-  return lower + (upper - lower) * static_cast<float>(random() >> 8) / 16777216.0f;
 }
 
 static Probe<2> random_probe(std::mt19937& random) {

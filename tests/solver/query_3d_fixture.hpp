@@ -10,6 +10,7 @@
 
 #include "solver/queries/query.hpp"
 #include "solver/queries/separation.hpp"
+#include "tests/solver/random_fixture.hpp"
 #include "tests/solver/space_fixture.hpp"
 
 namespace cycloid::solver {
@@ -17,11 +18,6 @@ namespace cycloid::solver {
 /// Shapes in space made without a world, random poses, and a reference in double precision.
 
 inline constexpr float kExact = 1e-6f;
-
-/// Raw generator words alone: the distributions of <random> differ between libraries.
-inline float uniform(std::mt19937& random, float lower, float upper) {
-  return lower + (upper - lower) * static_cast<float>(random() >> 8) / 16777216.0f;
-}
 
 inline Vec<3> random_vector(std::mt19937& random, float size) {
   return {
@@ -148,31 +144,31 @@ inline std::vector<Vec<3>> random_corners(std::mt19937& random, int count, Vec<3
   return points;
 }
 
-using Wide = std::array<double, 3>;
-inline Wide wide(const Vec<3>& v) {
+using WideVec = std::array<double, 3>;
+inline WideVec wide(const Vec<3>& v) {
   return {double{v[0]}, double{v[1]}, double{v[2]}};
 }
-inline Wide minus(const Wide& a, const Wide& b) {
+inline WideVec minus(const WideVec& a, const WideVec& b) {
   return {a[0] - b[0], a[1] - b[1], a[2] - b[2]};
 }
-inline Wide plus(const Wide& a, double s, const Wide& b) {
+inline WideVec plus(const WideVec& a, double s, const WideVec& b) {
   return {a[0] + s * b[0], a[1] + s * b[1], a[2] + s * b[2]};
 }
-inline double wide_dot(const Wide& a, const Wide& b) {
+inline double wide_dot(const WideVec& a, const WideVec& b) {
   return a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
 }
-inline Wide wide_cross(const Wide& a, const Wide& b) {
+inline WideVec wide_cross(const WideVec& a, const WideVec& b) {
   return {a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]};
 }
-inline double wide_length(const Wide& a) {
+inline double wide_length(const WideVec& a) {
   return std::sqrt(wide_dot(a, a));
 }
 
 /// A core as corners, edges and triangles, in double precision.
 struct WideCore {
-  std::vector<Wide> points;
-  std::vector<std::pair<Wide, Wide>> edges;
-  std::vector<std::array<Wide, 3>> triangles;
+  std::vector<WideVec> points;
+  std::vector<std::pair<WideVec, WideVec>> edges;
+  std::vector<std::array<WideVec, 3>> triangles;
 };
 
 inline WideCore wide_core(const Core<3>& core) {
@@ -193,21 +189,21 @@ inline WideCore wide_core(const Core<3>& core) {
   return result;
 }
 
-inline double wide_to_edge(const Wide& p, const std::pair<Wide, Wide>& edge) {
-  const Wide span = minus(edge.second, edge.first);
+inline double wide_to_edge(const WideVec& p, const std::pair<WideVec, WideVec>& edge) {
+  const WideVec span = minus(edge.second, edge.first);
   const double square = wide_dot(span, span);
   const double t =
       square > 0 ? std::clamp(wide_dot(minus(p, edge.first), span) / square, 0.0, 1.0) : 0.0;
   return wide_length(minus(p, plus(edge.first, t, span)));
 }
 
-inline double wide_to_triangle(const Wide& p, const std::array<Wide, 3>& t) {
-  const Wide normal = wide_cross(minus(t[1], t[0]), minus(t[2], t[0]));
+inline double wide_to_triangle(const WideVec& p, const std::array<WideVec, 3>& t) {
+  const WideVec normal = wide_cross(minus(t[1], t[0]), minus(t[2], t[0]));
   bool inside = true;
   double nearest = 1e300;
   for (std::size_t i = 0; i < 3; ++i) {
-    const Wide& from = t[i];
-    const Wide& to = t[(i + 1) % 3];
+    const WideVec& from = t[i];
+    const WideVec& to = t[(i + 1) % 3];
     if (wide_dot(wide_cross(minus(to, from), normal), minus(p, from)) > 0) inside = false;
     nearest = std::min(nearest, wide_to_edge(p, {from, to}));
   }
@@ -215,11 +211,12 @@ inline double wide_to_triangle(const Wide& p, const std::array<Wide, 3>& t) {
   return std::abs(wide_dot(normal, minus(p, t[0]))) / wide_length(normal);
 }
 
-inline double wide_between_edges(const std::pair<Wide, Wide>& a, const std::pair<Wide, Wide>& b) {
+inline double wide_between_edges(const std::pair<WideVec, WideVec>& a,
+                                 const std::pair<WideVec, WideVec>& b) {
   double nearest = std::min({wide_to_edge(a.first, b), wide_to_edge(a.second, b),
                              wide_to_edge(b.first, a), wide_to_edge(b.second, a)});
-  const Wide u = minus(a.second, a.first), v = minus(b.second, b.first);
-  const Wide n = wide_cross(u, v), w = minus(b.first, a.first);
+  const WideVec u = minus(a.second, a.first), v = minus(b.second, b.first);
+  const WideVec n = wide_cross(u, v), w = minus(b.first, a.first);
   const double square = wide_dot(n, n);
   if (square < 1e-24) return nearest;
   const double s = wide_dot(wide_cross(w, v), n) / square;
@@ -231,15 +228,15 @@ inline double wide_between_edges(const std::pair<Wide, Wide>& a, const std::pair
 /// The largest separation over all axes; negative for crossing cores, and then the depth.
 inline double wide_axis_separation(const WideCore& a, const WideCore& b) {
   double best = -1e300;
-  const auto offer = [&](const Wide& axis) {
+  const auto offer = [&](const WideVec& axis) {
     const double size = wide_length(axis);
     if (size < 1e-9) return;
     double low_a = 1e300, high_a = -1e300, low_b = 1e300, high_b = -1e300;
-    for (const Wide& p : a.points) {
+    for (const WideVec& p : a.points) {
       low_a = std::min(low_a, wide_dot(p, axis) / size);
       high_a = std::max(high_a, wide_dot(p, axis) / size);
     }
-    for (const Wide& p : b.points) {
+    for (const WideVec& p : b.points) {
       low_b = std::min(low_b, wide_dot(p, axis) / size);
       high_b = std::max(high_b, wide_dot(p, axis) / size);
     }
@@ -259,12 +256,12 @@ inline double wide_separation(const WideCore& a, const WideCore& b) {
   const double axis = wide_axis_separation(a, b);
   if (solid && axis < 0) return axis;
   double nearest = 1e300;
-  for (const Wide& p : a.points) {
-    for (const Wide& q : b.points) nearest = std::min(nearest, wide_length(minus(p, q)));
+  for (const WideVec& p : a.points) {
+    for (const WideVec& q : b.points) nearest = std::min(nearest, wide_length(minus(p, q)));
     for (const auto& e : b.edges) nearest = std::min(nearest, wide_to_edge(p, e));
     for (const auto& t : b.triangles) nearest = std::min(nearest, wide_to_triangle(p, t));
   }
-  for (const Wide& p : b.points) {
+  for (const WideVec& p : b.points) {
     for (const auto& e : a.edges) nearest = std::min(nearest, wide_to_edge(p, e));
     for (const auto& t : a.triangles) nearest = std::min(nearest, wide_to_triangle(p, t));
   }

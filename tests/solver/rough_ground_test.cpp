@@ -86,7 +86,7 @@ static float energy_of(const Body<3>& body) {
   return kinetic_energy(body) + body.mass * 10.0f * (body.position[1] + 0.2f);
 }
 
-static float clearance(const BodyView<3>& body, const std::vector<Vec<3>>& points) {
+static float height_above_ground(const BodyView<3>& body, const std::vector<Vec<3>>& points) {
   float least = 1.0e30f;
   for (const Vec<3>& point : points) {
     const Vec<3> at = body.position + rotate(body.rotation, point);
@@ -125,7 +125,7 @@ static Ride drop(const Dropped& dropped, const Vec<3>& velocity, float turn, flo
     const Body<3> before = body;
     step(world, 1);
     ride.way += length(body.position - before.position);
-    ride.clearance = std::min(ride.clearance, clearance(view(world, id), dropped.points));
+    ride.clearance = std::min(ride.clearance, height_above_ground(view(world, id), dropped.points));
     const Vec<3> moved = (0.5f / 60.0f) * (before.velocity + body.velocity);
     ride.shift = std::max(ride.shift, length(body.position - before.position - moved));
     const float fallen = -0.5f * (before.velocity[1] + body.velocity[1]) / 60.0f;

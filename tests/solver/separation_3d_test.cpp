@@ -112,7 +112,7 @@ TEST(SolidSeparation, IsFiniteWhereThereIsNoDirection) {
       }
 }
 
-static Shape<3> random_shape(std::mt19937& random, int kind, Polyhedra& pools) {
+static Shape<3> random_solid_of_kind(std::mt19937& random, int kind, Polyhedra& pools) {
   const Vec<3> half = {
       {uniform(random, 0.05f, 1.0f), uniform(random, 0.05f, 1.0f), uniform(random, 0.05f, 1.0f)}};
   switch (kind) {
@@ -137,8 +137,8 @@ TEST(SolidSeparation, AgreesWithDoublePrecisionForEveryPair) {
   for (int i = 0; i < 10000; ++i) {
     Polyhedra pools;
     const int kinds[2] = {static_cast<int>(random() % 5), static_cast<int>(random() % 5)};
-    const Shape<3> shape_a = random_shape(random, kinds[0], pools);
-    const Shape<3> shape_b = random_shape(random, kinds[1], pools);
+    const Shape<3> shape_a = random_solid_of_kind(random, kinds[0], pools);
+    const Shape<3> shape_b = random_solid_of_kind(random, kinds[1], pools);
     const Core<3> a = core_at(shape_a, random_vector(random, 0.2f), random_rotation(random), pools);
     const Core<3> b = core_at(shape_b, random_vector(random, i % 2 == 0 ? 0.6f : 1.5f),
                               random_rotation(random), pools);

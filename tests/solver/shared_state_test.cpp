@@ -1,6 +1,6 @@
 #include <thread>
 
-#include "solver/encoding.hpp"
+#include "tests/solver/encoding_fixture.hpp"
 #include "tests/solver/world_fixture.hpp"
 
 namespace cycloid::solver {
@@ -18,12 +18,6 @@ World<2> resting_pyramid(int base) {
     }
   step(world, 120);
   return world;
-}
-
-std::vector<std::byte> bytes_of(const WorldState<2>& state) {
-  std::vector<std::byte> bytes;
-  encode_state(state, bytes);
-  return bytes;
 }
 
 TEST(SavedState, TakesAtMost300BytesForARestingBodyWithThreeContacts) {

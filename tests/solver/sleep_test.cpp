@@ -13,15 +13,8 @@ static bool sleeps(const World<2>& world, BodyId id) {
   return world.state().bodies[id.index].asleep != 0;
 }
 
-static std::vector<BodyId> add_stack(World<2>& world, int count, float x = 0.0f) {
-  std::vector<BodyId> boxes;
-  for (int i = 0; i < count; ++i)
-    boxes.push_back(add_at<2>(world, {{x, 0.5f + static_cast<float>(i)}}, box(0.5f, 0.5f)));
-  return boxes;
-}
-
 // Words of a body, so that nothing that changes while it sleeps can hide.
-static std::vector<std::byte> bytes_of(const Body<2>& body) {
+static std::vector<std::byte> memory_of(const Body<2>& body) {
   std::vector<std::byte> bytes(sizeof body);
   std::memcpy(bytes.data(), &body, sizeof body);
   return bytes;
@@ -37,7 +30,7 @@ TEST(Sleep, AStackFallsAsleepAndThenNothingOfItChangesAndNothingIsSolved) {
   const WorldState<2> before = world.state();
   step(world, 3000);
   for (const BodyId id : boxes)
-    EXPECT_EQ(bytes_of(world.state().bodies[id.index]), bytes_of(before.bodies[id.index]));
+    EXPECT_EQ(memory_of(world.state().bodies[id.index]), memory_of(before.bodies[id.index]));
   ASSERT_EQ(world.state().contacts.size(), before.contacts.size());
   EXPECT_TRUE(world.contact_events().empty());
   // Ten contacts, each with the sag of a soft row under its load.

@@ -2,14 +2,6 @@
 
 namespace cycloid::solver {
 
-static const Shape<3> kCube = solid_box(0.5f, 0.5f, 0.5f);
-static const double kRight = std::acos(0.0);  ///< A right angle, rad.
-
-static Manifold<3> meet(const Shape<3>& a, const Pose<3>& pose_a, const Shape<3>& b,
-                        const Pose<3>& pose_b, float margin = 0.02f) {
-  return collide(a, pose_a, b, pose_b, margin, {});
-}
-
 static std::vector<float> separations(const Manifold<3>& manifold) {
   std::vector<float> all;
   for (std::uint32_t i = 0; i < manifold.point_count; ++i)

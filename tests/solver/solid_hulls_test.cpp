@@ -1,21 +1,7 @@
 #include "tests/solver/manifold_3d_fixture.hpp"
+#include "tests/solver/round_fixture.hpp"
 
 namespace cycloid::solver {
-
-static const Shape<3> kCube = solid_box(0.5f, 0.5f, 0.5f);
-static const double kRight = std::acos(0.0);  ///< A right angle, rad.
-
-static Manifold<3> meet(const Shape<3>& a, const Pose<3>& pose_a, const Shape<3>& b,
-                        const Pose<3>& pose_b, float margin = 0.02f) {
-  return collide(a, pose_a, b, pose_b, margin, {});
-}
-
-static float deepest(const Manifold<3>& manifold) {
-  float least = 1e30f;
-  for (std::uint32_t i = 0; i < manifold.point_count; ++i)
-    least = std::min(least, manifold.points[i].separation);
-  return least;
-}
 
 static void expect_finite(const Manifold<3>& manifold) {
   ASSERT_GT(manifold.point_count, 0u);

@@ -5,7 +5,7 @@
 
 namespace cycloid::solver {
 
-static Vec<3> drawn_vector(std::mt19937& random, float most) {
+static Vec<3> drawn_on_grid(std::mt19937& random, float most) {
   Vec<3> drawn;
   for (float& value : drawn.v)
     value = most * (static_cast<float>(random() % 4096) / 2048.0f - 1.0f);
@@ -64,7 +64,7 @@ TEST(SolidKernels, FindFacesAndCornersAsOneByOneAtEveryWidth) {
     const auto& faces = hull.pool.faces;
     const auto& vertices = hull.pool.vertices;
     for (int round = 0; round < 500; ++round) {
-      const Vec<3> point = drawn_vector(random, 2.0f);
+      const Vec<3> point = drawn_on_grid(random, 2.0f);
       const std::uint32_t face = first_farthest_face(faces, point);
       const float lowest = lowest_corner(vertices, point);
       for_each_width<4>([&]<int W>() {
@@ -85,8 +85,8 @@ static std::vector<Solid> thrown_solids(std::mt19937& random) {
   std::vector<Solid> solids;
   for (const TestHull& hull : kHulls) {
     const Rotation<3> any =
-        turn_about(drawn_vector(random, 1.0f), 0.001 * static_cast<double>(random() % 3000));
-    solids.push_back(placed(hull.shape, {drawn_vector(random, 0.6f), any}, hull.pool));
+        turn_about(drawn_on_grid(random, 1.0f), 0.001 * static_cast<double>(random() % 3000));
+    solids.push_back(placed(hull.shape, {drawn_on_grid(random, 0.6f), any}, hull.pool));
   }
   const float level = 0.25f * static_cast<float>(random() % 5);
   solids.push_back(placed(solid_box(0.5f, 0.25f, 0.5f), at(0.0f, level, 0.0f)));

@@ -1,13 +1,11 @@
 #include <gtest/gtest.h>
 
 #include "solver/queries/time_of_impact.hpp"
+#include "tests/solver/impact_fixture.hpp"
 #include "tests/solver/query_3d_fixture.hpp"
 #include "tests/solver/world_fixture.hpp"
 
 namespace cycloid::solver {
-
-constexpr float kTarget = 0.01f;
-constexpr float kTolerance = 0.002f;
 
 static BodySweep<3> way_of(Vec<3> from, Vec<3> translation, Vec<3> turn = Vec<3>::zero(),
                            Rotation<3> rotation = identity_rotation<3>()) {
@@ -23,7 +21,7 @@ struct SolidPair {
   Polyhedra pools = {};
 
   Impact impact() const {
-    return time_of_impact(a, sweep_a, b, sweep_b, kTarget, kTolerance, pools);
+    return time_of_impact(a, sweep_a, b, sweep_b, kImpactTarget_m, kImpactTolerance_m, pools);
   }
   Core<3> core(bool of_b, float fraction) const {
     const Pose<3> pose = pose_at(of_b ? sweep_b : sweep_a, fraction);
@@ -70,8 +68,8 @@ TEST(SolidImpact, OfASpinningRodAgreesWithFineSampling) {
     for (int k = 0; k <= 4000 && passed > 1; ++k) {
       const float fraction = static_cast<float>(k) * 2.5e-4f;
       const double gap = pair.gap_at(fraction);
-      if (gap <= double{kTarget} && reached > 1) reached = fraction;
-      if (gap < double{kTarget - kTolerance}) passed = fraction;
+      if (gap <= double{kImpactTarget_m} && reached > 1) reached = fraction;
+      if (gap < double{kImpactTarget_m - kImpactTolerance_m}) passed = fraction;
     }
     const Impact impact = pair.impact();
     EXPECT_EQ(impact.hit, passed <= 1) << i;
@@ -127,11 +125,11 @@ TEST(SolidImpact, OfABoxThatFallsOnAMeshIsThatOfItsLowestCorner) {
                        way_of({{0, 30, 0}}, {{0, -60, 0}}, {{0, 0, 3.1415927f}}, tilt)};
   const Impact impact = pair.impact();
   ASSERT_TRUE(impact.hit);
-  EXPECT_GE(pair.gap_at(impact.fraction), double{kTarget - kTolerance});
-  EXPECT_LE(pair.gap_at(impact.fraction), double{kTarget} + 1e-5);
+  EXPECT_GE(pair.gap_at(impact.fraction), double{kImpactTarget_m - kImpactTolerance_m});
+  EXPECT_LE(pair.gap_at(impact.fraction), double{kImpactTarget_m} + 1e-5);
 }
 
-static Shape<3> random_shape(std::mt19937& random, Polyhedra& pools) {
+static Shape<3> random_small_solid(std::mt19937& random, Polyhedra& pools) {
   const Vec<3> half = {
       {uniform(random, 0.02f, 0.8f), uniform(random, 0.05f, 0.8f), uniform(random, 0.05f, 0.8f)}};
   switch (random() % 4) {
@@ -146,7 +144,7 @@ static Shape<3> random_shape(std::mt19937& random, Polyhedra& pools) {
   }
 }
 
-static BodySweep<3> random_sweep(std::mt19937& random) {
+static BodySweep<3> random_sweep_in_space(std::mt19937& random) {
   const Vec<3> from = random_vector(random, 2.5f);
   const Vec<3> turn = random() % 3 == 0 ? Vec<3>::zero() : random_vector(random, 3.0f);
   return way_of(from, random_vector(random, 0.4f) - uniform(random, 0, 2) * from, turn,
@@ -158,16 +156,16 @@ TEST(SolidImpact, NeverPassesThroughNorStopsForNothing) {
   int hits = 0, early = 0, misses = 0;
   for (int i = 0; i < 3000; ++i) {
     SolidPair pair;
-    pair.a = random_shape(random, pair.pools);
-    pair.b = random_shape(random, pair.pools);
-    pair.sweep_a = random_sweep(random);
-    pair.sweep_b = random_sweep(random);
-    if (pair.gap_at(0) < 2 * double{kTarget}) continue;
+    pair.a = random_small_solid(random, pair.pools);
+    pair.b = random_small_solid(random, pair.pools);
+    pair.sweep_a = random_sweep_in_space(random);
+    pair.sweep_b = random_sweep_in_space(random);
+    if (pair.gap_at(0) < 2 * double{kImpactTarget_m}) continue;
     const Impact impact = pair.impact();
-    const double least = double{kTarget - kTolerance} - 1e-5;
+    const double least = double{kImpactTarget_m - kImpactTolerance_m} - 1e-5;
     for (int k = 0; k <= 40; ++k)
       ASSERT_GE(pair.gap_at(impact.fraction * static_cast<float>(k) / 40), least) << i << " " << k;
-    if (impact.hit && pair.gap_at(impact.fraction) > double{kTarget} + 1e-5) ++early;
+    if (impact.hit && pair.gap_at(impact.fraction) > double{kImpactTarget_m} + 1e-5) ++early;
     ++(impact.hit ? hits : misses);
   }
   EXPECT_GT(hits, 500);

@@ -9,11 +9,10 @@
 
 #include "solver/collision/collide.hpp"
 #include "solver/queries/query.hpp"
+#include "tests/solver/impact_fixture.hpp"
+#include "tests/solver/random_fixture.hpp"
 
 namespace cycloid::solver {
-
-constexpr float kTarget = 0.01f;
-constexpr float kTolerance = 0.002f;
 
 template <int D>
 Shape<D> ball_shape(float radius) {
@@ -117,22 +116,27 @@ struct Pair {
   double gap_at(double fraction) const {
     return gap(outline_at(a, sweep_a, fraction), outline_at(b, sweep_b, fraction));
   }
-  Impact impact() const { return time_of_impact(a, sweep_a, b, sweep_b, kTarget, kTolerance, {}); }
+  Impact impact() const {
+    return time_of_impact(a, sweep_a, b, sweep_b, kImpactTarget_m, kImpactTolerance_m, {});
+  }
 };
 
 TEST(TimeOfImpact, OfStraightWaysIsExact) {
   const Shape<2> ball = ball_shape<2>(0.05f);
   const Shape<2> wall = box_shape(0.01f, 10.0f);
-  const Impact hit = time_of_impact(ball, sweep<2>({{0, 0}}, {{1000, 0}}), wall,
-                                    sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance, {});
+  const Impact hit =
+      time_of_impact(ball, sweep<2>({{0, 0}}, {{1000, 0}}), wall, sweep<2>({{500, 0}}, {{0, 0}}),
+                     kImpactTarget_m, kImpactTolerance_m, {});
   ASSERT_TRUE(hit.hit);
   EXPECT_NEAR(hit.fraction * 1000, 500 - 0.01 - 0.05 - 0.009, 0.0011);
-  const Impact away = time_of_impact(ball, sweep<2>({{0, 0}}, {{-1000, 0}}), wall,
-                                     sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance, {});
+  const Impact away =
+      time_of_impact(ball, sweep<2>({{0, 0}}, {{-1000, 0}}), wall, sweep<2>({{500, 0}}, {{0, 0}}),
+                     kImpactTarget_m, kImpactTolerance_m, {});
   EXPECT_FALSE(away.hit);
   EXPECT_EQ(away.fraction, 1.0f);
-  const Impact beside = time_of_impact(ball, sweep<2>({{0, 10.07f}}, {{1000, 0}}), wall,
-                                       sweep<2>({{500, 0}}, {{0, 0}}), kTarget, kTolerance, {});
+  const Impact beside =
+      time_of_impact(ball, sweep<2>({{0, 10.07f}}, {{1000, 0}}), wall,
+                     sweep<2>({{500, 0}}, {{0, 0}}), kImpactTarget_m, kImpactTolerance_m, {});
   EXPECT_FALSE(beside.hit);
 }
 
@@ -148,8 +152,8 @@ TEST(TimeOfImpact, OfASpinningRodAgreesWithFineSampling) {
     double passed = 2;
     for (int k = 0; k <= 100000 && passed > 1; ++k) {
       const double gap_now = pair.gap_at(k * 1e-5);
-      if (gap_now <= kTarget && reached > 1) reached = k * 1e-5;
-      if (gap_now < kTarget - kTolerance) passed = k * 1e-5;
+      if (gap_now <= kImpactTarget_m && reached > 1) reached = k * 1e-5;
+      if (gap_now < kImpactTarget_m - kImpactTolerance_m) passed = k * 1e-5;
     }
     const Impact impact = pair.impact();
     EXPECT_EQ(impact.hit, passed <= 1) << i;
@@ -167,8 +171,8 @@ TEST(TimeOfImpact, OfShapesThatStartTooCloseIsZeroOnlyOnTheWayIn) {
   const Shape<2> box = box_shape(0.5f, 0.5f);
   const BodySweep<2> rest = sweep<2>({{0, 0}}, {{0, 0}});
   const auto from = [&](float height, Vec<2> way) {
-    return time_of_impact(floor, rest, box, sweep<2>({{0, 1.5f + height}}, way), kTarget,
-                          kTolerance, {});
+    return time_of_impact(floor, rest, box, sweep<2>({{0, 1.5f + height}}, way), kImpactTarget_m,
+                          kImpactTolerance_m, {});
   };
   for (const float height : {-0.02f, 0.0f, 0.0085f, 0.0095f}) {
     const Impact down = from(height, {{0, -0.5f}});
@@ -188,8 +192,10 @@ TEST(TimeOfImpact, MeetsSegmentsFromTheFreeSideAlone) {
   for (const Shape<2>& shape : {ball_shape<2>(0.1f), box_shape(0.1f, 0.1f)}) {
     const auto fall = [&](float x, float from, float to, bool swapped, float turn) {
       const BodySweep<2> way = sweep<2>({{x, from}}, {{0, to - from}}, {{turn}});
-      return swapped ? time_of_impact(shape, way, segment, rest, kTarget, kTolerance, {})
-                     : time_of_impact(segment, rest, shape, way, kTarget, kTolerance, {});
+      return swapped ? time_of_impact(shape, way, segment, rest, kImpactTarget_m,
+                                      kImpactTolerance_m, {})
+                     : time_of_impact(segment, rest, shape, way, kImpactTarget_m,
+                                      kImpactTolerance_m, {});
     };
     for (const bool swapped : {false, true}) {
       const Impact down = fall(0.3f, 2.0f, -2.0f, swapped, 0.0f);
@@ -202,7 +208,8 @@ TEST(TimeOfImpact, MeetsSegmentsFromTheFreeSideAlone) {
     }
   }
   const BodySweep<2> fall = sweep<2>({{0, 1}}, {{0, -2}});
-  EXPECT_FALSE(time_of_impact(segment, rest, segment, fall, kTarget, kTolerance, {}).hit);
+  EXPECT_FALSE(
+      time_of_impact(segment, rest, segment, fall, kImpactTarget_m, kImpactTolerance_m, {}).hit);
 }
 
 TEST(TimeOfImpact, StumblesOverNoJointOfAFlatChain) {
@@ -211,12 +218,15 @@ TEST(TimeOfImpact, StumblesOverNoJointOfAFlatChain) {
   const BodySweep<2> slide = sweep<2>({{-2, 0.109f}}, {{3, 0}});
   // Against an end alone the face of the box stops; where a neighbour leads up to it, it does not.
   const Shape<2> box = box_shape(0.1f, 0.1f);
-  EXPECT_TRUE(time_of_impact(segment, rest, box, slide, kTarget, kTolerance, {}).hit);
+  EXPECT_TRUE(
+      time_of_impact(segment, rest, box, slide, kImpactTarget_m, kImpactTolerance_m, {}).hit);
   segment.ghosts = 2;
   segment.vertices[3] = {{-2, 0}};
-  EXPECT_FALSE(time_of_impact(segment, rest, box, slide, kTarget, kTolerance, {}).hit);
+  EXPECT_FALSE(
+      time_of_impact(segment, rest, box, slide, kImpactTarget_m, kImpactTolerance_m, {}).hit);
   const BodySweep<2> fall = sweep<2>({{-1, 1}}, {{3, -2}});
-  EXPECT_TRUE(time_of_impact(segment, rest, box, fall, kTarget, kTolerance, {}).hit);
+  EXPECT_TRUE(
+      time_of_impact(segment, rest, box, fall, kImpactTarget_m, kImpactTolerance_m, {}).hit);
 }
 
 TEST(TimeOfImpact, MeetsHalfSpacesAndWorksInSpace) {
@@ -225,7 +235,7 @@ TEST(TimeOfImpact, MeetsHalfSpacesAndWorksInSpace) {
   plane.normal = {{0, 1}};
   const BodySweep<2> rod = sweep<2>({{0, 0.9f}}, {{0, 0}}, {{1.5f}});
   const Impact tip = time_of_impact(box_shape(1, 0.01f), rod, plane, sweep<2>({{0, 0}}, {{0, 0}}),
-                                    kTarget, kTolerance, {});
+                                    kImpactTarget_m, kImpactTolerance_m, {});
   ASSERT_TRUE(tip.hit);
   const double angle = 1.5 * tip.fraction;
   EXPECT_NEAR(0.9 - std::sin(angle) - 0.01 * std::cos(angle), 0.009, 0.0011);
@@ -234,15 +244,10 @@ TEST(TimeOfImpact, MeetsHalfSpacesAndWorksInSpace) {
   offset.vertices[0] = {{1, 0, 0}};
   const Impact swung =
       time_of_impact(offset, sweep<3>({{0, 0, 0}}, {{0, 0, 0}}, {{0, 0, 2}}), ball_shape<3>(0.3f),
-                     sweep<3>({{0, 1, 0}}, {{0, 0, 0}}), kTarget, kTolerance, {});
+                     sweep<3>({{0, 1, 0}}, {{0, 0, 0}}), kImpactTarget_m, kImpactTolerance_m, {});
   ASSERT_TRUE(swung.hit);
   const double turned = 2.0 * swung.fraction;
   EXPECT_NEAR(std::hypot(std::cos(turned), 1 - std::sin(turned)), 0.509, 0.0011);
-}
-
-/// Raw generator words alone: the distributions of <random> differ between libraries.
-static float uniform(std::mt19937& random, float lower, float upper) {
-  return lower + (upper - lower) * static_cast<float>(random() >> 8) / 16777216.0f;
 }
 
 static Shape<2> random_shape(std::mt19937& random) {
@@ -273,13 +278,15 @@ TEST(TimeOfImpact, NeverPassesThroughNorStopsForNothing) {
   for (int i = 0; i < 4000; ++i) {
     const Pair pair{random_shape(random), random_shape(random), random_sweep(random),
                     random_sweep(random)};
-    if (pair.gap_at(0) < 2 * kTarget) continue;
+    if (pair.gap_at(0) < 2 * kImpactTarget_m) continue;
     const Impact impact = pair.impact();
     const double until = impact.fraction;
-    ASSERT_GE(pair.gap_at(until), kTarget - kTolerance - (impact.hit ? 0.0 : 1e-5)) << i;
+    ASSERT_GE(pair.gap_at(until), kImpactTarget_m - kImpactTolerance_m - (impact.hit ? 0.0 : 1e-5))
+        << i;
     for (int k = 0; k <= 200; ++k)
-      ASSERT_GE(pair.gap_at(until * k / 200), kTarget - kTolerance) << i << " at " << k;
-    if (impact.hit && pair.gap_at(until) > kTarget + 1e-5) ++early;
+      ASSERT_GE(pair.gap_at(until * k / 200), kImpactTarget_m - kImpactTolerance_m)
+          << i << " at " << k;
+    if (impact.hit && pair.gap_at(until) > kImpactTarget_m + 1e-5) ++early;
     ++(impact.hit ? hits : misses);
   }
   EXPECT_GT(hits, 800);

@@ -14,8 +14,9 @@ template <class T>
 struct TreeSolverTest : testing::Test {
   static constexpr int kDim = T::value;
 };
-using Dimensions = testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
-TYPED_TEST_SUITE(TreeSolverTest, Dimensions);
+using TreeDimensions =
+    testing::Types<std::integral_constant<int, 2>, std::integral_constant<int, 3>>;
+TYPED_TEST_SUITE(TreeSolverTest, TreeDimensions);
 
 /// One number in [lower, upper), the same with every library.
 static float uniform(std::minstd_rand& random, float lower, float upper) {
@@ -58,7 +59,7 @@ static TreeSystem<D> random_tree(unsigned seed, int bodies, bool fixed_rotations
 /// origin or free. `bend` turns each link against the one before; the last weighs `tip` kg. The
 /// rows cancel what one tick of gravity does to all bodies, or to the first where none is ground.
 template <int D>
-static TreeSystem<D> chain(int links, float tip, double angle, double bend, int grounds) {
+static TreeSystem<D> chain_of_links(int links, float tip, double angle, double bend, int grounds) {
   TreeSystem<D> system;
   Vec<D> end = Vec<D>::zero();
   for (int i = 0; i < links; ++i) {
@@ -96,7 +97,7 @@ TYPED_TEST(TreeSolverTest, HangingChainsCarryTheWeightBelow) {
   constexpr int kFreedoms = TreeSystem<TestFixture::kDim>::kFreedoms;
   for (const int links : {10, 40, 160})
     for (const float tip : {1.0f, 1e2f, 1e5f}) {
-      auto system = chain<TestFixture::kDim>(links, tip, -std::acos(-1.0) / 2.0, 0.0, 1);
+      auto system = chain_of_links<TestFixture::kDim>(links, tip, -std::acos(-1.0) / 2.0, 0.0, 1);
       system.solve();
       for (int i = 0; i < links; ++i) {
         const float weight = (tip + static_cast<float>(links - 1 - i)) * kFall;
@@ -110,7 +111,8 @@ TYPED_TEST(TreeSolverTest, SlantedAndHorizontalChainsFulfilTheirRowsAtAnyMassRat
   for (const int links : {10, 40, 160})
     for (const float tip : {1.0f, 1e2f, 1e5f})
       for (const double angle : {-0.7, 0.0}) {
-        auto system = chain<TestFixture::kDim>(links, tip, angle, angle == 0.0 ? 0.0 : 0.01, 1);
+        auto system =
+            chain_of_links<TestFixture::kDim>(links, tip, angle, angle == 0.0 ? 0.0 : 0.01, 1);
         system.solve();
         EXPECT_LE(system.error_of_velocities(), 1e-5 * kFall) << links << " " << tip;
         EXPECT_LE(system.error_of_impulses(), 1e-3 * kFall) << links << " " << tip;
@@ -120,7 +122,7 @@ TYPED_TEST(TreeSolverTest, SlantedAndHorizontalChainsFulfilTheirRowsAtAnyMassRat
 
 /// Impulses alone miss by their rounding: 2^-24 of 1e5 kg g h on a mass of 1/2 kg, at most 1.2e-2.
 TYPED_TEST(TreeSolverTest, ASecondSolveTakesAwayWhatRoundingOfTheImpulsesLeft) {
-  auto system = chain<TestFixture::kDim>(40, 1e5f, -std::acos(-1.0) / 2.0, 0.0, 1);
+  auto system = chain_of_links<TestFixture::kDim>(40, 1e5f, -std::acos(-1.0) / 2.0, 0.0, 1);
   system.solve();
   EXPECT_LE(system.error_of_impulses(), 1.5e-2 * kFall);
   const Eigen::MatrixXd j = system.jacobian();
@@ -134,7 +136,7 @@ TYPED_TEST(TreeSolverTest, ASecondSolveTakesAwayWhatRoundingOfTheImpulsesLeft) {
 
 TYPED_TEST(TreeSolverTest, HeavyBodiesAreExactAtEitherEndOfAFreeChain) {
   for (const bool heavy_first : {false, true}) {
-    auto system = chain<TestFixture::kDim>(40, heavy_first ? 1.0f : 1e5f, -0.7, 0.02, 0);
+    auto system = chain_of_links<TestFixture::kDim>(40, heavy_first ? 1.0f : 1e5f, -0.7, 0.02, 0);
     if (heavy_first) {
       system.masses[1].inverse_mass = 1e-5f;
       for (float& m : system.masses[1].inverse_inertia.m) m *= 1e-5f;
@@ -148,7 +150,7 @@ TYPED_TEST(TreeSolverTest, HeavyBodiesAreExactAtEitherEndOfAFreeChain) {
 TYPED_TEST(TreeSolverTest, ChainsBetweenTwoGroundsAreTreesAndExact) {
   for (const int links : {10, 40, 160})
     for (const float middle : {1.0f, 1e5f}) {
-      auto system = chain<TestFixture::kDim>(links, 1.0f, -0.7, 1.4 / links, 2);
+      auto system = chain_of_links<TestFixture::kDim>(links, 1.0f, -0.7, 1.4 / links, 2);
       auto& mass = system.masses[static_cast<std::size_t>(links) / 2];
       mass.inverse_mass /= middle;
       for (float& m : mass.inverse_inertia.m) m /= middle;
@@ -164,11 +166,11 @@ TYPED_TEST(TreeSolverTest, ChainsBetweenTwoGroundsAreTreesAndExact) {
 TYPED_TEST(TreeSolverTest, DependentRowsAreFulfilledWhereTheyAgreeAndBoundedWhereTheyDoNot) {
   constexpr int kFreedoms = TreeSystem<TestFixture::kDim>::kFreedoms;
   for (const double angle : {0.0, -0.7}) {
-    auto system = chain<TestFixture::kDim>(40, 1.0f, angle, 0.0, 2);
+    auto system = chain_of_links<TestFixture::kDim>(40, 1.0f, angle, 0.0, 2);
     system.solve();
     EXPECT_LE(system.error_of_velocities(), 1e-5 * kFall);
   }
-  auto stretched = chain<TestFixture::kDim>(40, 1.0f, 0.0, 0.0, 2);
+  auto stretched = chain_of_links<TestFixture::kDim>(40, 1.0f, 0.0, 0.0, 2);
   stretched.rhs[40 * kFreedoms] = 1.0f;
   stretched.solve();
   // Three solves, each against the compliance 1e-5 of a link of 1 kg.
@@ -274,7 +276,7 @@ TYPED_TEST(TreeSolverTest, GivesTheSameBitsAgainAndAfterOtherTrees) {
 TYPED_TEST(TreeSolverTest, TakesTwiceTheOperationsForTwiceTheLinks) {
   std::uint64_t operations[2];
   for (const int doubled : {0, 1}) {
-    auto system = chain<TestFixture::kDim>(100 << doubled, 1.0f, -0.7, 0.01, 1);
+    auto system = chain_of_links<TestFixture::kDim>(100 << doubled, 1.0f, -0.7, 0.01, 1);
     system.solve();
     operations[doubled] = system.solver.operations();
   }

@@ -10,7 +10,7 @@ struct TwistSetting {
   Tuning tuning;
 };
 
-static std::vector<TwistSetting> settings() {
+static std::vector<TwistSetting> twist_settings() {
   std::vector<TwistSetting> all = {{"soft_step", Tuning::soft_step()},
                                    {"pgs", Tuning::pgs()},
                                    {"split_impulse", Tuning::split_impulse()},
@@ -50,7 +50,7 @@ TEST(Twist, StopsASpinningBallAtItsTime) {
   const float twist = 0.02f;
   const float spin = 20.0f;
   const float stops = 0.4f * kRadius * spin / (twist * kGravity);  // 20 s.
-  for (const TwistSetting& setting : settings()) {
+  for (const TwistSetting& setting : twist_settings()) {
     EXPECT_NEAR(spin_after(setting, twist, spin, 0.5f * stops), 0.5f * spin, 0.01f * spin)
         << setting.name;
     EXPECT_GT(spin_after(setting, twist, spin, 0.99f * stops), 0.0f) << setting.name;
@@ -59,14 +59,14 @@ TEST(Twist, StopsASpinningBallAtItsTime) {
 }
 
 TEST(Twist, WithoutResistanceABallSpinsOn) {
-  for (const TwistSetting& setting : settings())
+  for (const TwistSetting& setting : twist_settings())
     EXPECT_NEAR(spin_after(setting, 0.0f, 20.0f, 10.0f), 20.0f, 0.02f) << setting.name;
 }
 
 // Rolling resistance is about axes across the normal, twist about the normal: each leaves the
 // other's motion alone.
 TEST(Twist, AndRollingDoNotMix) {
-  for (const TwistSetting& setting : settings()) {
+  for (const TwistSetting& setting : twist_settings()) {
     const float resistance = 0.02f;
     World<3> rolls = ground_of<3>(setting.tuning, {0.6f, 0.0f, resistance, 0.0f});
     World<3> twists = ground_of<3>(setting.tuning, {0.6f, 0.0f, 0.0f, resistance});
@@ -143,20 +143,20 @@ static ShapeDef<3> lying_capsule() {
   return shape;
 }
 
-static float moment_about(const World<3>& world, BodyId id, int axis) {
+static float moment_about_own_axis(const World<3>& world, BodyId id, int axis) {
   return world.state().bodies[id.index].inertia.m[4 * axis];
 }
 
 // Frictionless, so that only the twist slows it: I_y w' = -twist r m g.
 TEST(Twist, SlowsALyingCapsuleByItsOwnMoment) {
-  for (const TwistSetting& setting : settings()) {
+  for (const TwistSetting& setting : twist_settings()) {
     World<3> world = ground_of<3>(setting.tuning, {0.0f, 0.0f, 0.0f, 0.1f});
     BodyDef<3> def;
     def.position = {{0.0f, 0.2f, 0.0f}};
     def.spin = {{0.0f, 10.0f, 0.0f}};
     const BodyId id = add(world, def, lying_capsule());
     const float mass = 1.0f / world.state().bodies[id.index].inverse_mass;
-    const float slows = 0.1f * 0.2f * mass * kGravity / moment_about(world, id, 1);
+    const float slows = 0.1f * 0.2f * mass * kGravity / moment_about_own_axis(world, id, 1);
     step(world, 60);
     EXPECT_NEAR(10.0f - view(world, id).spin[1], slows, 0.01f * slows) << setting.name;
   }
@@ -165,7 +165,7 @@ TEST(Twist, SlowsALyingCapsuleByItsOwnMoment) {
 // m a = f, I_x a / r = c r N - f r: a = c g / (1 + I_x / (m r^2)). It rolls about its long axis, at
 // 30 degrees to the axes of the world.
 TEST(Twist, RollingResistanceOfACapsuleTakesItsMomentAboutItsAxis) {
-  for (TwistSetting setting : settings()) {
+  for (TwistSetting setting : twist_settings()) {
     // One sweep of Gauss-Seidel rocks a capsule on its two points, with resistance or without.
     setting.tuning.sweeps = std::max(setting.tuning.sweeps, 2u);
     const float c = 0.05f;
@@ -180,7 +180,7 @@ TEST(Twist, RollingResistanceOfACapsuleTakesItsMomentAboutItsAxis) {
     def.velocity = spin_cross(def.spin, Vec<3>{{0.0f, 0.2f, 0.0f}});
     const BodyId id = add(world, def, lying_capsule());
     const float mass = 1.0f / world.state().bodies[id.index].inverse_mass;
-    const float share = 1.0f / (1.0f + moment_about(world, id, 0) / (mass * 0.04f));
+    const float share = 1.0f / (1.0f + moment_about_own_axis(world, id, 0) / (mass * 0.04f));
     step(world, 20);
     const float before = dot(view(world, id).velocity, along);
     step(world, 40);

@@ -4,12 +4,15 @@
 
 #include <cmath>
 #include <span>
+#include <vector>
 
 #include "solver/world.hpp"
 
 namespace cycloid::solver {
 
 /// Shapes and worlds that many tests need; gravity is 10 m/s^2, downwards along axis 1.
+
+inline constexpr float kTick = 1.0f / 60.0f;  ///< Of a world by default, s.
 
 template <int D>
 World<D> make_world(WorldDef<D> def = {}) {
@@ -24,6 +27,21 @@ WorldDef<D> with_gravity(Material material = {}) {
   def.gravity[1] = -10.0f;
   def.materials = {material};
   return def;
+}
+
+template <int D>
+WorldDef<D> def_with(const Tuning& tuning, Material material = {}) {
+  WorldDef<D> def = with_gravity<D>(material);
+  def.tuning = tuning;
+  return def;
+}
+
+template <int D>
+Vec<D> at(float x, float y) {
+  Vec<D> position = Vec<D>::zero();
+  position[0] = x;
+  position[1] = y;
+  return position;
 }
 
 template <int D>
@@ -61,6 +79,14 @@ BodyId add_at(World<D>& world, Vec<D> position, const ShapeDef<D>& shape) {
   BodyDef<D> def;
   def.position = position;
   return add(world, def, shape);
+}
+
+/// Boxes of 1 m on one another, the lowest on the ground.
+inline std::vector<BodyId> add_stack(World<2>& world, int count, float x = 0.0f) {
+  std::vector<BodyId> boxes;
+  for (int i = 0; i < count; ++i)
+    boxes.push_back(add_at<2>(world, {{x, 0.5f + static_cast<float>(i)}}, box(0.5f, 0.5f)));
+  return boxes;
 }
 
 /// A static half-space below the plane through the origin with this normal.
