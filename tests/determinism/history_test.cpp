@@ -176,7 +176,8 @@ TEST_P(History, CarriedThroughOtherSimulationsItGoesOnAsItWas) {
 INSTANTIATE_TEST_SUITE_P(Scenes, History, testing::ValuesIn(scene_names()), scene_test_name);
 
 /// The digests of so many ticks of a scene in a new world, which lives on in `alive`.
-std::vector<std::uint64_t> digests_of(const std::string& name, std::vector<Simulation>& alive) {
+std::vector<std::uint64_t> digests_in_new_world(const std::string& name,
+                                                std::vector<Simulation>& alive) {
   const Scene scene = std::move(*scenes::find(name).scene);
   Simulation simulation = begin(scene);
   std::vector<std::uint64_t> digests = {simulation.digest()};
@@ -192,9 +193,9 @@ TEST(ProcessHistory, ScenesRunBeforeAndAliveAreInvisible) {
   const std::vector<std::string> names = scene_names();
   std::vector<std::vector<std::uint64_t>> forward;
   std::vector<Simulation> alive;
-  for (const std::string& name : names) forward.push_back(digests_of(name, alive));
+  for (const std::string& name : names) forward.push_back(digests_in_new_world(name, alive));
   for (std::size_t i = names.size(); i-- > 0;)
-    EXPECT_EQ(digests_of(names[i], alive), forward[i]) << names[i];
+    EXPECT_EQ(digests_in_new_world(names[i], alive), forward[i]) << names[i];
   for (std::size_t i = 0; i < names.size(); ++i)
     EXPECT_EQ(first_difference(alive[i], alive[2 * names.size() - 1 - i]), "equal to the bit")
         << names[i];

@@ -24,7 +24,7 @@ std::vector<SeatInput> inputs_of(const Scene& scene, const Simulation& simulatio
 }
 
 /// "sweep, substep 1, sweep 0: contact 7 points[0].normal_mass ..." of the first difference, or "".
-std::string first_difference(const solver::StepTrace& a, const solver::StepTrace& b) {
+std::string first_traced_difference(const solver::StepTrace& a, const solver::StepTrace& b) {
   if (a.phases.size() != b.phases.size()) return "another number of phases";
   for (std::size_t i = 0; i < a.phases.size(); ++i) {
     const solver::TracedPhase& one = a.phases[i];
@@ -58,7 +58,7 @@ TEST_P(Traced, PhasesAreTheSameAtEveryLaneWidthAndWorkerCount) {
       const std::vector<SeatInput> inputs = inputs_of(scene, reference);
       ASSERT_TRUE(reference.step_traced(inputs, expected).ok());
       ASSERT_TRUE(other.step_traced(inputs, found).ok());
-      ASSERT_EQ(first_difference(expected, found), "")
+      ASSERT_EQ(first_traced_difference(expected, found), "")
           << "tick " << tick << ", workers " << setting.workers << ", lanes " << setting.lanes;
       ASSERT_GT(expected.phases.size(), 10u);
     }

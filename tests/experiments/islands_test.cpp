@@ -18,23 +18,24 @@ static solver::Tuning islands_at_once() {
   return tuning;
 }
 
-static scenes::Simulation begin_trial(const std::string& name) {
+static scenes::Simulation begin_islands_at_once(const std::string& name) {
   return begin_trial(name, islands_at_once());
 }
 
 /// Blows on pyramids, joints with contacts in loops, motors against limits, and four points of a
 /// box in space.
-static constexpr const char* kMixed[] = {"trial-heavy-apexes", "trial-bridge",
-                                         "trial-ragdoll-stress", "trial-arch",
-                                         "trial-duplicate-points"};
+static constexpr const char* kTrialsOfIslands[] = {"trial-heavy-apexes", "trial-bridge",
+                                                   "trial-ragdoll-stress", "trial-arch",
+                                                   "trial-duplicate-points"};
 
 TEST(IslandsAtOnce, WorkersAndLanesAreInvisible) {
-  for (const char* name : kMixed) expect_workers_and_lanes_invisible(name, islands_at_once());
+  for (const char* name : kTrialsOfIslands)
+    expect_workers_and_lanes_invisible(name, islands_at_once());
 }
 
 TEST(IslandsAtOnce, RestoredFromMemoryAndFromBytesTheyGoOnAsTheyWere) {
-  for (const char* name : kMixed) {
-    scenes::Simulation simulation = begin_trial(name);
+  for (const char* name : kTrialsOfIslands) {
+    scenes::Simulation simulation = begin_islands_at_once(name);
     for (int tick = 0; tick < 45; ++tick) ASSERT_TRUE(simulation.step({}).ok());
     scenes::Simulation::Saved saved;
     simulation.save(saved);
@@ -46,7 +47,7 @@ TEST(IslandsAtOnce, RestoredFromMemoryAndFromBytesTheyGoOnAsTheyWere) {
       digests.push_back(simulation.digest());
     }
     simulation.restore(saved);
-    scenes::Simulation fresh = begin_trial(name);
+    scenes::Simulation fresh = begin_islands_at_once(name);
     ASSERT_TRUE(fresh.decode(bytes).ok());
     for (const std::uint64_t digest : digests) {
       ASSERT_TRUE(simulation.step({}).ok());
@@ -60,11 +61,11 @@ TEST(IslandsAtOnce, RestoredFromMemoryAndFromBytesTheyGoOnAsTheyWere) {
 /// What is sorted into islands is kept while the same things hold each other; masses and friction
 /// are not part of that, and a world that sorts anew knows no other.
 TEST(IslandsAtOnce, WhatIsKeptOfThemKnowsOfEdits) {
-  scenes::Simulation kept = begin_trial("trial-pyramid-20");
+  scenes::Simulation kept = begin_islands_at_once("trial-pyramid-20");
   for (int tick = 0; tick < 30; ++tick) ASSERT_TRUE(kept.step({}).ok());
   std::vector<std::byte> bytes;
   kept.encode(bytes);
-  scenes::Simulation fresh = begin_trial("trial-pyramid-20");
+  scenes::Simulation fresh = begin_islands_at_once("trial-pyramid-20");
   ASSERT_TRUE(fresh.decode(bytes).ok());
   const std::uint64_t before = kept.digest();
   for (scenes::Simulation* simulation : {&kept, &fresh}) {
@@ -115,7 +116,7 @@ static bool was_solved(const solver::Statistics& statistics, const solver::Tunin
 TEST(IslandsAtOnce, AreLeftAloneOnceTheWarmStartHoldsThem) {
   for (const char* name : {"trial-heavy-on-light-1000", "trial-400-on-thick-ground",
                            "trial-card-house", "trial-heavy-apexes"}) {
-    scenes::Simulation simulation = begin_trial(name);
+    scenes::Simulation simulation = begin_islands_at_once(name);
     int solved = 0;
     for (int tick = 1; tick <= 600; ++tick) {
       ASSERT_TRUE(simulation.step({}).ok());

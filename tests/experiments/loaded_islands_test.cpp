@@ -21,18 +21,19 @@ static Tuning with_rows(Tuning tuning, ContactBlockRows rows) {
 
 /// A load on two boxes, a stack, blows on pyramids, joints with contacts in loops, motors that jam,
 /// and a box in space.
-static constexpr const char* kMixed[] = {
+static constexpr const char* kTrialsOfLoads[] = {
     "trial-heavy-on-light-1000", "trial-stack-30",         "trial-heavy-apexes", "trial-bridge",
     "trial-ragdoll-stress",      "trial-duplicate-points", "trial-joint-grid-30"};
 
 TEST(LoadedIslands, WorkersAndLanesAreInvisible) {
-  for (const char* name : kMixed) expect_workers_and_lanes_invisible(name, Tuning::soft_loaded());
+  for (const char* name : kTrialsOfLoads)
+    expect_workers_and_lanes_invisible(name, Tuning::soft_loaded());
 }
 
 // What is loaded is read from the state alone: a world that has just been restored, or made of
 // bytes, and has kept nothing of its islands, takes the same.
 TEST(LoadedIslands, RestoredTheyGoOnAsTheyWere) {
-  for (const char* name : kMixed) {
+  for (const char* name : kTrialsOfLoads) {
     scenes::Simulation simulation = begin_trial(name, Tuning::soft_loaded());
     for (int tick = 0; tick < 45; ++tick) {
       ASSERT_TRUE(simulation.step({}).ok());

@@ -51,7 +51,7 @@ static const solver::Tuning& tuning_of(const std::string& name) {
   return found->tuning;
 }
 
-static std::string test_name(const testing::TestParamInfo<std::string>& method) {
+static std::string name_without_hyphens(const testing::TestParamInfo<std::string>& method) {
   std::string name = method.param;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
@@ -90,7 +90,7 @@ TEST_P(PlayedRooms, NoWorldFaults) {
   for (int room = 1; room <= rooms; ++room) play(scene, change_inputs, room, ticks);
 }
 
-INSTANTIATE_TEST_SUITE_P(Methods, PlayedRooms, testing::ValuesIn(names()), test_name);
+INSTANTIATE_TEST_SUITE_P(Methods, PlayedRooms, testing::ValuesIn(names()), name_without_hyphens);
 
 class PlayedChain : public testing::TestWithParam<std::string> {};
 
@@ -104,7 +104,7 @@ TEST_P(PlayedChain, NoWorldFaults) {
 
 INSTANTIATE_TEST_SUITE_P(Methods, PlayedChain,
                          testing::Values("soft-step", "soft-loaded", "soft-direct", "soft-islands"),
-                         test_name);
+                         name_without_hyphens);
 
 // A chain that whips is solved at once in one tick and swept, with its guess weighed, in the next.
 TEST(PlayedChainDigests, HaveNoTraceOfLanesAndRestoring) {
@@ -142,6 +142,7 @@ static std::vector<std::string> scenes_with_seats() {
   return names;
 }
 
-INSTANTIATE_TEST_SUITE_P(Catalogue, PlayedScene, testing::ValuesIn(scenes_with_seats()), test_name);
+INSTANTIATE_TEST_SUITE_P(Catalogue, PlayedScene, testing::ValuesIn(scenes_with_seats()),
+                         name_without_hyphens);
 
 }  // namespace cycloid::trials

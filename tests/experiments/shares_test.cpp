@@ -35,7 +35,7 @@ TEST(Shares, AFaultHasNoNumberAndIsWorseThanAny) {
   EXPECT_EQ(words_of({endless, kFail}), "0 0 2 - -");
 }
 
-static const char* const kTable =
+static const char* const kTableText =
     "runs 4 seed 18446744073709551615\n"
     "trial-stack-10 soft-step 3 1 0 0.1 0.123\n"
     "trial-stack-10 soft-loaded 4 0 0 1.05e-05 2e-05\n"
@@ -44,12 +44,12 @@ static const char* const kTable =
 TEST(ShareTables, AreReadAsTheyWereWritten) {
   ShareTable table;
   std::string mistake;
-  ASSERT_TRUE(read_shares(kTable, table, mistake)) << mistake;
+  ASSERT_TRUE(read_shares(kTableText, table, mistake)) << mistake;
   EXPECT_EQ(table.runs, 4u);
   EXPECT_EQ(table.seed, 18446744073709551615u);
   EXPECT_EQ(table.shares.size(), 3u);
   const std::string text = shares_text(table);
-  EXPECT_EQ(text.substr(text.find("runs 4")), kTable);
+  EXPECT_EQ(text.substr(text.find("runs 4")), kTableText);
   ShareTable again;
   ASSERT_TRUE(read_shares(text, again, mistake)) << mistake;
   EXPECT_EQ(again.shares, table.shares);
@@ -84,7 +84,7 @@ TEST(ShareTables, ThatAreNoneAreRefusedByLine) {
 TEST(ShareTables, ShowInBoldWhatStandsInAllRuns) {
   ShareTable table;
   std::string mistake;
-  ASSERT_TRUE(read_shares(kTable, table, mistake)) << mistake;
+  ASSERT_TRUE(read_shares(kTableText, table, mistake)) << mistake;
   EXPECT_EQ(shares_markdown(table),
             "| row | trial | number | soft-step | soft-loaded |\n"
             "|---|---|---|---|---|\n"

@@ -53,7 +53,7 @@ TEST_P(EveryTrial, IsAGoodSceneThatIsFoundByItsName) {
   EXPECT_TRUE(scenes::find(GetParam().name).scene.has_value());
 }
 
-static std::string test_name(const testing::TestParamInfo<scenes::Trial>& trial) {
+static std::string trial_test_name(const testing::TestParamInfo<scenes::Trial>& trial) {
   std::string name = trial.param.name;
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
@@ -61,7 +61,7 @@ static std::string test_name(const testing::TestParamInfo<scenes::Trial>& trial)
 
 INSTANTIATE_TEST_SUITE_P(All, EveryTrial,
                          testing::ValuesIn(scenes::trials().begin(), scenes::trials().end()),
-                         test_name);
+                         trial_test_name);
 
 TEST(Trials, CoverEveryRowOfTheList) {
   int row = 0;

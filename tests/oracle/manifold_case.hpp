@@ -10,10 +10,6 @@
 
 namespace cycloid::oracle {
 
-inline Vector to_double(const solver::Vec<3>& v) {
-  return {v[0], v[1], v[2]};
-}
-
 /// A pair, its manifold, and what has been found wrong with it.
 struct Case {
   const Pair& pair;

@@ -13,13 +13,6 @@ double Pair::scale() const {
   return std::max({1.0, a->size, b->size});
 }
 
-static Vector to_double(const solver::Vec<3>& v) {
-  return {v[0], v[1], v[2]};
-}
-static solver::Vec<3> to_float(const Vector& v) {
-  return {{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}};
-}
-
 Placement placement_in(const Pair& pair, const Pose<3>& pose) {
   const Vector imaginary = {pose.rotation[0], pose.rotation[1], pose.rotation[2]};
   const double real = pose.rotation[3];

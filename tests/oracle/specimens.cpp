@@ -16,13 +16,6 @@ const char* name_of(Kind kind) {
   return kNames[static_cast<int>(kind)];
 }
 
-static Vec<3> to_float(const Vector& v) {
-  return {{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}};
-}
-static Vector to_double(const Vec<3>& v) {
-  return {v[0], v[1], v[2]};
-}
-
 /// A multiple of an eighth, at least one: sums and halves of such are exact.
 static double to_grid(double x) {
   return std::max(0.125, 0.125 * std::round(8.0 * x));
@@ -65,7 +58,7 @@ static std::vector<Vector> regular_corners(Random& random, const Vector& half) {
   return corners;
 }
 
-static void random_hull(Random& random, bool regular, ShapeDef<3>& def) {
+static void random_hull_def(Random& random, bool regular, ShapeDef<3>& def) {
   def.kind = ShapeKind::kHull;
   const Vector half = random_half(random, regular);
   std::vector<Vector> corners;
@@ -122,7 +115,7 @@ static ShapeDef<3> random_def(Random& random, Kind kind, bool regular) {
       }
       break;
     case Kind::kHull:
-      random_hull(random, regular, def);
+      random_hull_def(random, regular, def);
       break;
     case Kind::kHalfSpace:
       def.kind = ShapeKind::kHalfSpace;

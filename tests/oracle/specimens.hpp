@@ -10,6 +10,13 @@
 
 namespace cycloid::oracle {
 
+inline Vector to_double(const solver::Vec<3>& v) {
+  return {v[0], v[1], v[2]};
+}
+inline solver::Vec<3> to_float(const Vector& v) {
+  return {{static_cast<float>(v.x), static_cast<float>(v.y), static_cast<float>(v.z)}};
+}
+
 /// The kinds of shapes that the fuzz draws pairs from.
 enum class Kind { kBall, kCapsule, kBox, kHull, kHalfSpace, kTriangle };
 inline constexpr int kKinds = 6;
