@@ -14,7 +14,6 @@ namespace {
 
 constexpr std::int64_t kFarewellNs = kSecond;
 constexpr std::size_t kUnsentBytesMax = std::size_t{1} << 20;
-constexpr std::size_t kReadBytes = 16384;
 /// No quantised snapshot of the scenes of a run is as large.
 constexpr std::size_t kBindsNothing_bytes = 65536;
 

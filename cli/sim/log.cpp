@@ -114,24 +114,24 @@ void SimLog::rotate() {
 namespace {
 
 /// What a file of the log goes on from.
-struct Origin {
+struct LogOrigin {
   std::uint64_t tick = 0;
   std::uint64_t parent = 0;
   std::size_t timeline = 0;
 };
 
 /// Of the log's file of that place, as far as the log itself says; else behind the one before.
-Origin origin_of(const SimLog& log, std::size_t file, const Origin& behind) {
+LogOrigin origin_of(const SimLog& log, std::size_t file, const LogOrigin& behind) {
   const auto& branches = log.branches();
   const std::size_t timeline = behind.timeline;
   const bool branched = timeline < branches.size() && branches[timeline].file == file;
-  return branched ? Origin{branches[timeline].tick, behind.parent, timeline + 1} : behind;
+  return branched ? LogOrigin{branches[timeline].tick, behind.parent, timeline + 1} : behind;
 }
 
 /// The parts before the last: whole, whatever happened since, and each going on from the one
 /// before.
 std::optional<std::string> older_mistake(const Ledger& ledger, const protocol::Log& part,
-                                         const Origin& origin) {
+                                         const LogOrigin& origin) {
   if (part.state != protocol::LogState::kComplete) return "an older log: " + part.reason;
   if (part.header.branch_tick != origin.tick) return "an older log goes on from another tick";
   if (part.header.parent_log_id != origin.parent) return "an older log names another parent";
@@ -153,7 +153,7 @@ bool is_good(const LogFound& found, protocol::LogState state) {
 std::optional<std::string> log_mistake(const LogFound& found, const SimDisk& disk) {
   using protocol::LogState;
   const std::vector<std::uint64_t>& files = found.log->files();
-  Origin origin;
+  LogOrigin origin;
   for (std::size_t i = 0; i + 1 < files.size(); ++i) {
     origin = origin_of(*found.log, i, origin);
     const protocol::Log part = protocol::read_log(disk.content(files[i]));

@@ -16,6 +16,7 @@ namespace cycloid::sim {
 inline constexpr std::int64_t kNever = std::numeric_limits<std::int64_t>::max();
 inline constexpr std::int64_t kMillisecond = 1'000'000;
 inline constexpr std::int64_t kSecond = 1'000'000'000;
+inline constexpr std::size_t kReadBytes = 16384;  ///< That a client or session reads at once.
 
 /// How one direction of a connection treats its bytes.
 struct PipeFaults {

@@ -9,7 +9,6 @@ namespace cycloid::sim {
 namespace {
 
 constexpr std::int64_t kLinger = kSecond;
-constexpr std::size_t kReadBytes = 16384;
 /// A last word is not counted, and the message that reaches the bound is.
 constexpr std::size_t kBeyondBound = 1024;
 

@@ -8,12 +8,12 @@ namespace cycloid::server {
 namespace {
 
 using Kind = ConfigKind;
-using Value = ConfigValue;
 using Key = ConfigKey<ServerConfig>;
 
 using config_keys_of::as;
 using config_keys_of::integer;
 using config_keys_of::kManySeconds;
+using config_keys_of::Value;
 
 Key text(const char* name, const char* otherwise, bool reloads,
          void (*put)(ServerConfig&, const Value&)) {

@@ -5,11 +5,11 @@
 
 namespace cycloid::server {
 
-using Value = ConfigValue;
 using config_keys_of::as;
 using config_keys_of::integer;
 using config_keys_of::kMany;
 using config_keys_of::kManySeconds;
+using config_keys_of::Value;
 
 namespace {
 

@@ -5,18 +5,18 @@
 namespace cycloid::server {
 namespace {
 
-using Json = nlohmann::ordered_json;
+using OrderedJson = nlohmann::ordered_json;
 
-std::string string_of(const Json& json, const char* member) {
+std::string string_of(const OrderedJson& json, const char* member) {
   return json.at(member).get<std::string>();
 }
 
-std::string number_of(const Json& json, const char* member) {
+std::string number_of(const OrderedJson& json, const char* member) {
   return std::to_string(json.at(member).get<std::uint64_t>());
 }
 
 /// "body 3 'left' (bodies 2 and 5): position[0]"
-std::string place_of(const Json& value) {
+std::string place_of(const OrderedJson& value) {
   std::string text = string_of(value, "object");
   const std::string name = string_of(value, "name");
   const std::string about = string_of(value, "about");
@@ -26,8 +26,8 @@ std::string place_of(const Json& value) {
   return field.empty() ? text : text + ": " + field;
 }
 
-void add_values(const Json& json, std::string& text) {
-  for (const Json& value : json.at("values")) {
+void add_values(const OrderedJson& json, std::string& text) {
+  for (const OrderedJson& value : json.at("values")) {
     const auto bits = value.at("bits").get<int>();
     text += "  " + place_of(value) + "\n    server " + string_of(value, "server") +
             "\n    client " + string_of(value, "client");
@@ -43,9 +43,9 @@ void add_values(const Json& json, std::string& text) {
   if (all > 0) text += "in " + objects + (objects == "1" ? " object\n" : " objects\n");
 }
 
-void add_sides(const Json& json, std::string& text) {
-  const Json& server = json.at("server");
-  const Json& client = json.at("client");
+void add_sides(const OrderedJson& json, std::string& text) {
+  const OrderedJson& server = json.at("server");
+  const OrderedJson& client = json.at("client");
   text += "server: " + string_of(server, "digest") + "  " + string_of(server, "build") + "\n";
   if (!server.at("digest_made_again").is_null()) {
     text += "        " + string_of(server, "digest_made_again") + "  made again from tick " +
@@ -55,7 +55,7 @@ void add_sides(const Json& json, std::string& text) {
           "\n        peer " + number_of(client, "peer") + " \"" + string_of(client, "name") + "\"" +
           (client.at("seat").is_null() ? ", a spectator" : ", seat " + number_of(client, "seat")) +
           "\n";
-  const Json& votes = json.at("votes");
+  const OrderedJson& votes = json.at("votes");
   text += "replicas at tick " + number_of(votes, "tick") + ": " + number_of(votes, "replicas") +
           ", of which " + number_of(votes, "with_server") + " agree with the server";
   if (votes.at("largest_other").get<std::uint64_t>() > 0) {
@@ -64,19 +64,19 @@ void add_sides(const Json& json, std::string& text) {
   text += "\n";
 }
 
-void add_inputs(const Json& json, std::string& text) {
+void add_inputs(const OrderedJson& json, std::string& text) {
   text += "inputs around it:\n";
-  for (const Json& tick : json.at("inputs")) {
+  for (const OrderedJson& tick : json.at("inputs")) {
     const bool here = tick.at("tick") == json.at("tick");
     text += (here ? "> " : "  ") + number_of(tick, "tick") + "  " + string_of(tick, "digest");
     std::size_t seat = 0;
-    for (const Json& said : tick.at("seats")) {
+    for (const OrderedJson& said : tick.at("seats")) {
       text += "  seat " + std::to_string(seat++) + ": " + said.at("axes").dump() + " " +
               number_of(said, "buttons");
       if (const std::string origin = string_of(said, "origin"); origin != "given")
         text += " " + origin;
     }
-    for (const Json& event : tick.at("events")) {
+    for (const OrderedJson& event : tick.at("events")) {
       text += "  " + string_of(event, "kind");
       text += event.contains("seat") ? " of seat " + number_of(event, "seat")
                                      : " to " + number_of(event, "value");
@@ -85,7 +85,7 @@ void add_inputs(const Json& json, std::string& text) {
   }
 }
 
-std::string text_of(const Json& json) {
+std::string text_of(const OrderedJson& json) {
   std::string text = "desync in room \"" + string_of(json, "room") + "\", scene " +
                      string_of(json, "scene") + " (" + string_of(json, "scene_digest") + ")\n";
   const bool first = json.at("tick_is_first").get<bool>();
@@ -100,7 +100,8 @@ std::string text_of(const Json& json) {
   }
   text += "wrong: " + string_of(json, "verdict") + "\n";
   add_sides(json, text);
-  for (const Json& note : json.at("notes")) text += "note: " + note.get<std::string>() + "\n";
+  for (const OrderedJson& note : json.at("notes"))
+    text += "note: " + note.get<std::string>() + "\n";
   add_inputs(json, text);
   if (json.at("log").is_null())
     text += "no log: " + string_of(json, "log_reason") + "\n";
@@ -120,7 +121,7 @@ std::string printable_text(std::string text) {
 
 std::optional<std::string> report_as_text(const std::string& json, std::string& error) {
   try {
-    const Json report = Json::parse(json);
+    const OrderedJson report = OrderedJson::parse(json);
     const auto version = report.at("schema_version").get<int>();
     if (version != kReportSchemaVersion || string_of(report, "kind") != "desync") {
       error = "schema_version " + std::to_string(version) + " of a " + string_of(report, "kind") +
@@ -128,7 +129,7 @@ std::optional<std::string> report_as_text(const std::string& json, std::string& 
       return std::nullopt;
     }
     return printable_text(text_of(report));
-  } catch (const Json::exception& wrong) {
+  } catch (const OrderedJson::exception& wrong) {
     error = std::string("not a desync report: ") + wrong.what();
     return std::nullopt;
   }

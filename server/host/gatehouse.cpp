@@ -33,7 +33,7 @@ GateTime gate_time() {
   return {process_now_ns(), std::chrono::duration_cast<std::chrono::seconds>(since_epoch).count()};
 }
 
-GateRefused encoded(const protocol::Refused& refused) {
+GateRefused encoded_refusal(const protocol::Refused& refused) {
   return {refused.code, refused.reason, protocol::encode(protocol::ServerMessage(refused))};
 }
 
@@ -103,7 +103,7 @@ asio::awaitable<void> Gatehouse::receive_tls(GateId id, CallerPtr caller) {
   if (shaken.end == Handshake::End::kPlaintext) {
     lose(id);
     const protocol::Refused refused{protocol::Refusal::kBadMessage, shaken.reason};
-    note(*caller, encoded(refused));
+    note(*caller, encoded_refusal(refused));
     turn_away_now(caller->stream->socket(), refused);
     co_return;
   }
@@ -179,7 +179,7 @@ void Gatehouse::turn_away(Entrant entrant, const protocol::Refused& refused) {
   asio::error_code error;
   const auto peer = caller->stream->socket().remote_endpoint(error);
   if (!error) caller->address = address_of(peer.address());
-  GateRefused word = encoded(refused);
+  GateRefused word = encoded_refusal(refused);
   note(*caller, word);
   see_off(caller, std::move(word));
 }

@@ -11,7 +11,6 @@ constexpr int kBadRequest = 400;
 constexpr int kNoSuchTemplate = 404;
 constexpr int kNameTaken = 409;
 constexpr int kCannotRun = 422;
-constexpr int kCannotWrite = 500;
 constexpr int kNoneMore = 503;
 
 RoomFound found_by(protocol::Refusal code) {

@@ -12,7 +12,6 @@ namespace cycloid::server {
 namespace {
 
 constexpr int kConflict = 409;
-constexpr int kCannotWrite = 500;
 constexpr int kNotFound = 404;
 
 ActResult write_state_file(const std::string& path, const std::vector<std::byte>& state) {

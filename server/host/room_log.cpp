@@ -2,21 +2,15 @@
 
 #include <chrono>
 #include <filesystem>
-#include <random>
 #include <system_error>
 #include <utility>
 
 #include "protocol/build_text.hpp"
 #include "server/host/process_time.hpp"
+#include "server/log/random_number.hpp"
 
 namespace cycloid::server {
 namespace {
-
-std::uint64_t random_number() {
-  std::random_device random;
-  const std::uint64_t high = random();
-  return (high << 32) | random();
-}
 
 std::int64_t unix_now_ns() {
   const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();

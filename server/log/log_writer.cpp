@@ -1,8 +1,9 @@
 #include "server/log/log_writer.hpp"
 
 #include <algorithm>
-#include <random>
 #include <utility>
+
+#include "server/log/random_number.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -11,11 +12,6 @@ template <class Clock>
 std::int64_t clock_ns() {
   return std::chrono::duration_cast<std::chrono::nanoseconds>(Clock::now().time_since_epoch())
       .count();
-}
-
-std::uint64_t system_random() {
-  std::random_device random;
-  return std::uint64_t{random()} << 32 | random();
 }
 
 /// A name beside the log's that no other process takes.
@@ -35,7 +31,7 @@ LogWriter::LogWriter(LogWriterOptions options, const protocol::LogHeader& header
     : options_(std::move(options)), header_(header) {
   if (!options_.now_ns) options_.now_ns = clock_ns<std::chrono::steady_clock>;
   if (!options_.unix_now_ns) options_.unix_now_ns = clock_ns<std::chrono::system_clock>;
-  if (!options_.random) options_.random = system_random;
+  if (!options_.random) options_.random = random_number;
   encoder_.emplace(header_, record_);
   if (first != nullptr) encoder_->first_keyframe(*first, record_);
   file_ = new_file(options_.path);

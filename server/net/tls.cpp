@@ -122,18 +122,21 @@ std::string ServerTls::fingerprint() const {
   return loaded_.fingerprint;
 }
 
+/// Shared with the timer's handler, which may run after the coroutine and the stream have gone. Not
+/// within the coroutine: GCC 12 takes such a class for one of its file alone, which a frame, known
+/// to others, may not have in it.
+struct HandshakeWatch {
+  bool done = false;
+  bool overdue = false;
+};
+
 asio::awaitable<Handshake> shake_hands(Stream& stream,
                                        std::chrono::steady_clock::time_point deadline) {
   Handshake shaken;
   if (!stream.is_tls()) co_return shaken;
   const auto executor = co_await asio::this_coro::executor;
   asio::steady_timer timer(executor, deadline);
-  // Shared with the timer's handler, which may run after this coroutine and the stream have gone.
-  struct Watch {
-    bool done = false;
-    bool overdue = false;
-  };
-  const auto watch = std::make_shared<Watch>();
+  const auto watch = std::make_shared<HandshakeWatch>();
   timer.async_wait([watch, &stream](const asio::error_code& error) {
     if (error || watch->done) return;
     watch->overdue = true;

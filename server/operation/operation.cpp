@@ -5,7 +5,7 @@
 namespace cycloid::server {
 namespace {
 
-HttpReply text(int status, const std::string& body) {
+HttpReply plain_text(int status, const std::string& body) {
   return {status, "text/plain; charset=utf-8", body + "\n", ""};
 }
 
@@ -28,13 +28,13 @@ Operation::Operation(Host& host, OperationOptions options)
 HttpReply Operation::handle(const HttpRequest& request) {
   if (request.path == "/admin" || request.path.starts_with("/admin/")) {
     if (admin_) return admin_->handle(request);
-    return text(404, "the admin interface is off: admin.token_file is not configured");
+    return plain_text(404, "the admin interface is off: admin.token_file is not configured");
   }
   const bool known =
       request.path == "/metrics" || request.path == "/livez" || request.path == "/readyz";
-  if (!known) return text(404, "paths: /metrics, /livez, /readyz, /admin/rooms");
+  if (!known) return plain_text(404, "paths: /metrics, /livez, /readyz, /admin/rooms");
   if (request.method != "GET" && request.method != "HEAD") {
-    HttpReply reply = text(405, "this path takes GET");
+    HttpReply reply = plain_text(405, "this path takes GET");
     reply.allow = "GET";
     return reply;
   }
@@ -42,10 +42,10 @@ HttpReply Operation::handle(const HttpRequest& request) {
     return {200, "text/plain; version=0.0.4; charset=utf-8", metrics_.text(), ""};
   }
   if (request.path == "/readyz") {
-    return host_.draining() ? text(503, "draining") : text(200, "ready");
+    return host_.draining() ? plain_text(503, "draining") : plain_text(200, "ready");
   }
   const std::string stuck = host_.stuck(options_.missed_ticks_max);
-  return stuck.empty() ? text(200, "alive") : text(503, stuck);
+  return stuck.empty() ? plain_text(200, "alive") : plain_text(503, stuck);
 }
 
 }  // namespace cycloid::server
