@@ -12,7 +12,7 @@ namespace cycloid::experiments {
 
 using namespace solver;
 
-static const char* const kSource = "Sequential Impulses Explained 2020: a box on four contacts";
+static const char* const kTalkOf2020 = "Sequential Impulses Explained 2020: a box on four contacts";
 static constexpr double kHalf = 0.5;
 
 /// A cube of 1 kg at rest on the plane, with a ball inside off its middle.
@@ -64,7 +64,8 @@ static reference::Assembled assemble_box(const BoxCase& each) {
       {-kTickSpeed, 0.0, 0.0});
 }
 
-static std::vector<double> impulses_of(const BoxCase& each, int sweeps, ContactBlockRows together) {
+static std::vector<double> impulses_of_box(const BoxCase& each, int sweeps,
+                                           ContactBlockRows together) {
   World<3> world = world_of(each, static_cast<std::uint32_t>(sweeps), together);
   space::step(world);
   return space::normal_impulses(world);
@@ -100,7 +101,7 @@ static Curve check_case(Report& report, const BoxCase& each) {
   const reference::Assembled box = assemble_box(each);
   const reference::Mlcp& problem = box.problem;
   const reference::DirectResult exact = reference::solve_direct(problem);
-  report.expect("residual of the direct solution" + in, kSource, 0.0, exact.residual, 1.0e-10);
+  report.expect("residual of the direct solution" + in, kTalkOf2020, 0.0, exact.residual, 1.0e-10);
   report.expect("rank of A over the rows that push" + in, "a body has 3 freedoms on a plane", 3.0,
                 exact.rank, 0.0);
   double left = 0.0;
@@ -118,7 +119,7 @@ static Curve check_case(Report& report, const BoxCase& each) {
                          1.0e-16));
   for (const int sweeps : {1, 2, 4, 8}) {
     const std::vector<double>& matrix = history[static_cast<std::size_t>(sweeps) - 1];
-    const std::vector<double> now = impulses_of(each, sweeps, ContactBlockRows::kNone);
+    const std::vector<double> now = impulses_of_box(each, sweeps, ContactBlockRows::kNone);
     const std::string after = " after " + std::to_string(sweeps) + " sweeps" + in;
     const WrenchError expected = wrench_of(box, matrix, exact.lambda);
     const WrenchError measured = wrench_of(box, now, exact.lambda);
@@ -130,13 +131,13 @@ static Curve check_case(Report& report, const BoxCase& each) {
                   reference::velocity_error(problem, matrix, exact.lambda),
                   reference::velocity_error(problem, now, exact.lambda), 1.0e-5);
   }
-  const std::vector<double> late = impulses_of(each, kMost, ContactBlockRows::kNone);
-  report.expect("error of the force after 200 sweeps" + in, kSource, 0.0,
+  const std::vector<double> late = impulses_of_box(each, kMost, ContactBlockRows::kNone);
+  report.expect("error of the force after 200 sweeps" + in, kTalkOf2020, 0.0,
                 wrench_of(box, late, exact.lambda).force, 1.0e-5);
   report.expect("impulses farthest from those of least norm, over the largest, 200 sweeps" + in,
                 "not unique: matrix in double", largest_difference(history.back(), exact.lambda),
                 largest_difference(late, exact.lambda), 1.0e-4);
-  const std::vector<double> together = impulses_of(each, 1, ContactBlockRows::kNormals);
+  const std::vector<double> together = impulses_of_box(each, 1, ContactBlockRows::kNormals);
   const WrenchError block = wrench_of(box, together, exact.lambda);
   report.expect("error of the force, normals together, one sweep" + in, "exact", 0.0, block.force,
                 1.0e-5);
@@ -147,7 +148,7 @@ static Curve check_case(Report& report, const BoxCase& each) {
 
 /// By hand: K = (4 1 1 -2; 1 4 -2 1; 1 -2 4 1; -2 1 1 4) / m, d = -g h.
 static void check_first_sweep(Report& report) {
-  const std::vector<double> now = impulses_of(kCases[0], 1, ContactBlockRows::kNone);
+  const std::vector<double> now = impulses_of_box(kCases[0], 1, ContactBlockRows::kNone);
   const std::array expected = {1.0 / 4.0, 3.0 / 16.0, 9.0 / 32.0, 33.0 / 128.0};
   for (std::size_t i = 0; i < expected.size(); ++i)
     report.expect("impulse of corner " + std::to_string(i) + " after the first sweep, over weight",

@@ -11,7 +11,8 @@ namespace cycloid::experiments {
 
 using namespace solver;
 
-static const char* const kSource = "methods 3.5: half width a, contacts at +-b, I = 2/3 m a^2";
+static const char* const kMethodsOfPoles =
+    "methods 3.5: half width a, contacts at +-b, I = 2/3 m a^2";
 
 /// A box of 1 kg and width 1 m on a pole of `beta` times its width.
 static World<2> make_pole(double beta, const Tuning& tuning) {
@@ -37,23 +38,24 @@ static void check_row(Report& report, const Row& row) {
   World<2> world = make_pole(row.beta, velocities_only(1));
   const auto first = impulses_by_sweep(world, 2);
   const double square = 1.5 * row.beta * row.beta;
-  report.expect("contact points" + name, kSource, 2.0, static_cast<double>(first[0].size()), 0.0);
-  report.expect("first impulse over exact after one sweep" + name, kSource, row.first,
+  report.expect("contact points" + name, kMethodsOfPoles, 2.0, static_cast<double>(first[0].size()),
+                0.0);
+  report.expect("first impulse over exact after one sweep" + name, kMethodsOfPoles, row.first,
                 first[0][0] / kExact[0], 6.0e-5);
   report.expect("first impulse over exact after one sweep" + name, "2 / (1 + 1.5 (b/a)^2)",
                 2.0 / (1.0 + square), first[0][0] / kExact[0], 5.0e-6);
-  report.expect("second impulse over exact after one sweep" + name, kSource, row.second,
+  report.expect("second impulse over exact after one sweep" + name, kMethodsOfPoles, row.second,
                 first[0][1] / kExact[1], 5.0e-4);
   report.expect("error of sweep 2 over that of sweep 1" + name,
                 "((1 - 1.5 (b/a)^2) / (1 + 1.5 (b/a)^2))^2",
                 std::pow((1.0 - square) / (1.0 + square), 2),
                 (first[1][0] - kExact[0]) / (first[0][0] - kExact[0]), 5.0e-5);
-  report.expect("sweeps to 5 %" + name, kSource, row.to_5, sweeps_to(world, kExact, 0.05, 400),
-                0.0);
+  report.expect("sweeps to 5 %" + name, kMethodsOfPoles, row.to_5,
+                sweeps_to(world, kExact, 0.05, 400), 0.0);
   report.expect("sweeps to 1.5 %, visual" + name, "Catto 2014: 2, a couple more, around 12",
                 row.to_1_5, sweeps_to(world, kExact, 0.015, 400), 0.0);
-  report.expect("sweeps to 1 %" + name, kSource, row.to_1, sweeps_to(world, kExact, 0.01, 400),
-                0.0);
+  report.expect("sweeps to 1 %" + name, kMethodsOfPoles, row.to_1,
+                sweeps_to(world, kExact, 0.01, 400), 0.0);
   Tuning block = velocities_only(1);
   block.contact_block = ContactBlockRows::kNormals;
   World<2> together = make_pole(row.beta, block);
@@ -71,7 +73,7 @@ static void check_wrong_clamp(Report& report, double beta, double separating) {
   const std::string name = ", b/a = " + std::to_string(beta).substr(0, 4);
   report.expect(
       "speed at which the left contact parts for ever when changes are clamped, over g h" + name,
-      kSource, separating, reference::velocities(pole.problem, wrong.back())[0], 6.0e-5);
+      kMethodsOfPoles, separating, reference::velocities(pole.problem, wrong.back())[0], 6.0e-5);
   report.expect("the same with the sum clamped" + name, "Catto 2006, accumulated impulses", 0.0,
                 reference::velocities(pole.problem, right.back())[0], 1.0e-5);
 }
@@ -113,7 +115,7 @@ static void check_drop(Report& report) {
                   impulse, 2.0e-6);
 }
 
-static void draw(Report& report) {
+static void draw_pole(Report& report) {
   Figure figure{"impulses-box-on-pole",
                 "First impulse of a box on a pole",
                 "sweeps",
@@ -149,7 +151,7 @@ Report box_on_pole() {
   check_wrong_clamp(report, 0.75, 0.0776);
   check_wrong_clamp(report, 0.5, 0.2479);
   check_wrong_clamp(report, 0.25, 0.1420);
-  draw(report);
+  draw_pole(report);
   return report;
 }
 

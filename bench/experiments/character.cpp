@@ -9,8 +9,6 @@ namespace cycloid::experiments {
 
 using namespace solver;
 
-static constexpr double kPi = 3.14159265358979323846;
-
 /// Two planes through the origin that enclose `angle` (rad), open towards -x; `copies` of each.
 static std::vector<CollisionPlane<2>> corner_of(double angle, int copies = 1) {
   std::vector<CollisionPlane<2>> planes;

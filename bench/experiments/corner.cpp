@@ -2,10 +2,9 @@
 #include <cmath>
 
 #include "bench/experiments/reports.hpp"
+#include "bench/experiments/worlds.hpp"
 
 namespace cycloid::experiments {
-
-static constexpr double kPi = 3.14159265358979323846;
 
 /// Two planes through the origin that enclose `angle` (rad) and a target at (1, 0), outside of both
 /// and on their bisector. The nearest point that satisfies both is the origin. Each sweep projects
@@ -30,7 +29,7 @@ static std::vector<double> project(double angle, int sweeps) {
   return left;
 }
 
-static int sweeps_to(const std::vector<double>& left, double tolerance) {
+static int sweeps_to_error(const std::vector<double>& left, double tolerance) {
   for (std::size_t i = 0; i < left.size(); ++i)
     if (left[i] <= tolerance) return static_cast<int>(i) + 1;
   return 0;
@@ -56,9 +55,9 @@ Report corner() {
     const double angle = each.degrees * kPi / 180.0;
     const std::vector<double> left = project(angle, each.to_0_1 + 1);
     const std::string name = ", corner of " + std::to_string(each.degrees) + " degrees";
-    report.expect("sweeps to 5 %" + name, source, each.to_5, sweeps_to(left, 0.05), 0.0);
-    report.expect("sweeps to 1 %" + name, source, each.to_1, sweeps_to(left, 0.01), 0.0);
-    report.expect("sweeps to 0.1 %" + name, source, each.to_0_1, sweeps_to(left, 0.001), 0.0);
+    report.expect("sweeps to 5 %" + name, source, each.to_5, sweeps_to_error(left, 0.05), 0.0);
+    report.expect("sweeps to 1 %" + name, source, each.to_1, sweeps_to_error(left, 0.01), 0.0);
+    report.expect("sweeps to 0.1 %" + name, source, each.to_0_1, sweeps_to_error(left, 0.001), 0.0);
     report.expect("distance after sweep 2 over that after sweep 1" + name, "cos^2 phi",
                   std::pow(std::cos(angle), 2), left[1] / left[0], 1.0e-12);
     Curve measured{std::to_string(each.degrees) + " degrees", {}};

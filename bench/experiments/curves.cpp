@@ -8,8 +8,6 @@ namespace cycloid::experiments {
 
 using namespace solver;
 
-static constexpr double kPi = 3.14159265358979323846;
-
 /// A bead of 1 kg on a wire: one constraint and gravity.
 struct Wire {
   World<2> world;

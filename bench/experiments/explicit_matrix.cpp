@@ -115,7 +115,7 @@ static std::vector<double> all_impulses(const World<2>& world) {
 /// Largest difference between the world's impulses and the matrix's after each sweep, over the
 /// largest impulse.
 template <class Real>
-static double largest_difference(World<2>& world, double friction, int sweeps) {
+static double largest_difference_of_world(World<2>& world, double friction, int sweeps) {
   const WorldState<2> before = world.state();
   step(world);
   const std::vector<Contact<2>> contacts = world.state().contacts;
@@ -166,9 +166,9 @@ Report explicit_matrix() {
         stack_of_balls(std::vector<double>(static_cast<std::size_t>(n), 1.0), velocities_only(1));
     const std::string name = ", stack of " + std::to_string(n);
     report.expect("largest difference of impulses over 30 sweeps, float matrix" + name, source, 0.0,
-                  largest_difference<float>(world, 0.0, 30), 2.0e-5);
+                  largest_difference_of_world<float>(world, 0.0, 30), 2.0e-5);
     report.expect("largest difference of impulses over 30 sweeps, double matrix" + name, source,
-                  0.0, largest_difference<double>(world, 0.0, 30), 2.0e-5);
+                  0.0, largest_difference_of_world<double>(world, 0.0, 30), 2.0e-5);
   }
   for (const double friction : {0.0, 0.3, 0.6})
     for (const int base : {2, 4}) {
@@ -176,9 +176,9 @@ Report explicit_matrix() {
       const std::string name = ", pyramid of base " + std::to_string(base) + ", friction " +
                                std::to_string(friction).substr(0, 3);
       report.expect("largest difference of impulses over 30 sweeps, float matrix" + name, source,
-                    0.0, largest_difference<float>(world, friction, 30), 2.0e-5);
+                    0.0, largest_difference_of_world<float>(world, friction, 30), 2.0e-5);
       report.expect("largest difference of impulses over 30 sweeps, double matrix" + name, source,
-                    0.0, largest_difference<double>(world, friction, 30), 2.0e-5);
+                    0.0, largest_difference_of_world<double>(world, friction, 30), 2.0e-5);
       report.expect(
           "contacts" + name, "a triangle of balls", 0.5 * base * (base - 1) * 2 + base,
           [&] {

@@ -35,19 +35,20 @@ static Slide slide(double angle, double friction, const Tuning& tuning) {
   return {down(view(world, id).position), down(view(world, id).velocity) - speed};
 }
 
-struct Method {
+struct StabilisedTuning {
   const char* name;
   Tuning tuning;
 };
 
-static std::array<Method, 3> methods() {
-  return {Method{"soft step", Tuning::soft_step()}, Method{"Baumgarte", Tuning::pgs()},
-          Method{"non-linear Gauss-Seidel", Tuning::pgs_ngs()}};
+static std::array<StabilisedTuning, 3> stabilised_tunings() {
+  return {StabilisedTuning{"soft step", Tuning::soft_step()},
+          StabilisedTuning{"Baumgarte", Tuning::pgs()},
+          StabilisedTuning{"non-linear Gauss-Seidel", Tuning::pgs_ngs()}};
 }
 
 static void check_slopes(Report& report) {
   const double ramp = std::atan(0.25);
-  for (const Method& method : methods()) {
+  for (const StabilisedTuning& method : stabilised_tunings()) {
     const std::string name = std::string(", ") + method.name;
     report.expect("way of a box on the slope of tangent 0.25 in 2 s, friction 0.2553, m" + name,
                   "Coulomb: sticks where tan < mu", 0.0, slide(ramp, 0.2553, method.tuning).way,

@@ -149,7 +149,7 @@ static void check_cubes(Report& report) {
 }
 
 /// How far the top ball has come down when all rests, m; positions are not corrected.
-static double sink(const std::vector<double>& masses, std::uint32_t sweeps) {
+static double sink_in_space(const std::vector<double>& masses, std::uint32_t sweeps) {
   World<3> world = space::stack_of_balls(masses, velocities_only(sweeps));
   const auto top = [&] {
     return static_cast<double>(world.state().bodies[masses.size()].position[1]);
@@ -159,22 +159,23 @@ static double sink(const std::vector<double>& masses, std::uint32_t sweeps) {
   return start - top();
 }
 
-static void check_sink(Report& report) {
+static void check_sink_in_space(Report& report) {
   const double unit = kGravity * kTick * kTick;
   for (const std::uint32_t sweeps : {1u, 2u, 4u, 8u, 10u}) {
     const double rate = std::pow(10.0 / 11.0, sweeps);
     const double formula = unit * rate / (1.0 - rate);
     report.expect(
         "sink of 10 kg on 1 kg with " + std::to_string(sweeps) + " sweeps, balls in space, m",
-        "g h^2 rho^K / (1 - rho^K)", formula, sink({1.0, 10.0}, sweeps), 2.0e-6 + 1.0e-3 * formula);
+        "g h^2 rho^K / (1 - rho^K)", formula, sink_in_space({1.0, 10.0}, sweeps),
+        2.0e-6 + 1.0e-3 * formula);
   }
   report.expect("sink of ten equal balls in space with one sweep, m", "g h^2 n (n - 1) / 2",
-                45.0 * unit, sink(std::vector<double>(10, 1.0), 1), 1.0e-4);
+                45.0 * unit, sink_in_space(std::vector<double>(10, 1.0), 1), 1.0e-4);
 }
 
 /// Share of the overlap with the ground that is left, without gravity.
-static double overlap_left(const ShapeDef<3>& shape, Stabilisation stabilisation, double beta,
-                           int ticks) {
+static double overlap_left_in_space(const ShapeDef<3>& shape, Stabilisation stabilisation,
+                                    double beta, int ticks) {
   Tuning tuning = velocities_only(10);
   tuning.stabilisation = stabilisation;
   tuning.contact_block = ContactBlockRows::kNormals;
@@ -200,19 +201,19 @@ static void check_correction(Report& report) {
   for (const double beta : {0.1, 0.2, 0.5})
     report.expect("share of a ball's overlap left after one tick, in space, beta " +
                       std::to_string(beta).substr(0, 3),
-                  source, 1.0 - beta, overlap_left(ball, Stabilisation::kBaumgarte, beta, 1),
-                  2.0e-5);
+                  source, 1.0 - beta,
+                  overlap_left_in_space(ball, Stabilisation::kBaumgarte, beta, 1), 2.0e-5);
   for (const Case& each : {Case{Stabilisation::kSplitImpulse, "split impulse"},
                            Case{Stabilisation::kNgs, "non-linear Gauss-Seidel"}})
     for (const double beta : {0.1, 0.2, 0.5}) {
       const std::string name =
           std::string(each.name) + ", in space, beta " + std::to_string(beta).substr(0, 3);
       report.expect("share of a ball's overlap left after 10 ticks, " + name, source,
-                    std::pow(1.0 - beta, 10), overlap_left(ball, each.stabilisation, beta, 10),
-                    2.0e-5);
+                    std::pow(1.0 - beta, 10),
+                    overlap_left_in_space(ball, each.stabilisation, beta, 10), 2.0e-5);
       report.expect("share of a cube's overlap left after 10 ticks, " + name, source,
-                    std::pow(1.0 - beta, 10), overlap_left(cube, each.stabilisation, beta, 10),
-                    2.0e-5);
+                    std::pow(1.0 - beta, 10),
+                    overlap_left_in_space(cube, each.stabilisation, beta, 10), 2.0e-5);
     }
 }
 
@@ -220,7 +221,7 @@ Report in_space() {
   Report report{"in-space", {}, {}};
   check_balls(report);
   check_cubes(report);
-  check_sink(report);
+  check_sink_in_space(report);
   check_correction(report);
   return report;
 }

@@ -10,7 +10,7 @@ using namespace solver;
 
 static const char* const kScript = "Catto 2014, MassRatioConvergence.m: cold start, 5 %";
 
-static int sweeps_of(double ratio, Order order, double tolerance = 0.05) {
+static int sweeps_at_ratio(double ratio, Order order, double tolerance = 0.05) {
   World<2> world = stack_of_balls({1.0, ratio}, velocities_only(1, order));
   return sweeps_to(world, exact_impulses({1.0, ratio}), tolerance, 600);
 }
@@ -34,8 +34,8 @@ static void check_whole_ratios(Report& report) {
   Curve down{"top-down", {}};
   Curve line{"3 r + 2", {}};
   for (int r = 1; r <= 50; ++r) {
-    const int sweeps = sweeps_of(r, Order::kId);
-    const int reverse = sweeps_of(r, Order::kReverse);
+    const int sweeps = sweeps_at_ratio(r, Order::kId);
+    const int reverse = sweeps_at_ratio(r, Order::kReverse);
     report.expect(at("sweeps, bottom-up,", r), kScript, 3.0 * r + 2.0, sweeps, 0.0);
     report.expect(at("sweeps, top-down,", r), kScript, 3.0 * r + 3.0, reverse, 0.0);
     up.points.emplace_back(r, sweeps);
@@ -60,19 +60,19 @@ static void check_other_ratios(Report& report) {
   };
   for (const Case& each : {Case{0.5, 3, 4}, Case{0.25, 2, 3}, Case{0.1, 2, 3}, Case{0.05, 1, 2}}) {
     const std::string ratio = " at mass ratio " + std::to_string(each.ratio);
-    report.expect("sweeps, bottom-up," + ratio, kScript, each.up, sweeps_of(each.ratio, Order::kId),
-                  0.0);
+    report.expect("sweeps, bottom-up," + ratio, kScript, each.up,
+                  sweeps_at_ratio(each.ratio, Order::kId), 0.0);
     report.expect("sweeps, top-down," + ratio, kScript, each.down,
-                  sweeps_of(each.ratio, Order::kReverse), 0.0);
+                  sweeps_at_ratio(each.ratio, Order::kReverse), 0.0);
   }
   // At 117:1 the threshold is met by 1.5e-6, less than 352 sweeps of float rounding.
   const char* const formula = "ceil(ln 20 / ln(1 + 1 / r)), which 3 r + 2 misses from 117 on";
   for (const int r : {100, 116, 117})
     report.expect(at("sweeps, bottom-up,", r), formula,
-                  std::ceil(std::log(20.0) / std::log(1.0 + 1.0 / r)), sweeps_of(r, Order::kId),
-                  r == 117 ? 1.0 : 0.0);
+                  std::ceil(std::log(20.0) / std::log(1.0 + 1.0 / r)),
+                  sweeps_at_ratio(r, Order::kId), r == 117 ? 1.0 : 0.0);
   report.expect("sweeps to 1 % at mass ratio 10:1", "ceil(ln 100 / ln 1.1)", 49.0,
-                sweeps_of(10.0, Order::kId, 0.01), 0.0);
+                sweeps_at_ratio(10.0, Order::kId, 0.01), 0.0);
 }
 
 /// Several measures of accuracy on four equal balls, which tells them apart.

@@ -8,8 +8,7 @@ namespace cycloid::experiments {
 
 using namespace solver;
 
-static constexpr double kPi = 3.14159265358979323846;
-static const char* const kSource = "Catto 2009, motors";
+static const char* const kTalkOf2009 = "Catto 2009, motors";
 
 /// A wheel of `inertia` (kg m^2) on a fixed axle, without gravity.
 struct Wheel {
@@ -55,13 +54,13 @@ static void check_speed_motor(Report& report) {
     const int ticks = static_cast<int>(0.4 / tick_s + 0.5);
     const std::string at = ", " + std::to_string(static_cast<int>(1.0 / tick_s + 0.5)) + " Hz";
     step(wheel.world, ticks - 1);
-    report.expect("speed a tick before 0.4 s, 5 N m on 1 kg m^2, rad/s" + at, kSource,
+    report.expect("speed a tick before 0.4 s, 5 N m on 1 kg m^2, rad/s" + at, kTalkOf2009,
                   5.0 * (0.4 - tick_s), wheel.speed(), 1.0e-5);
     step(wheel.world);
-    report.expect("speed at 0.4 s, rad/s" + at, kSource, 2.0, wheel.speed(), 1.0e-5);
+    report.expect("speed at 0.4 s, rad/s" + at, kTalkOf2009, 2.0, wheel.speed(), 1.0e-5);
     step(wheel.world, ticks);
-    report.expect("speed at 0.8 s, rad/s" + at, kSource, 2.0, wheel.speed(), 1.0e-5);
-    report.expect("torque once the speed is reached, N m" + at, kSource, 0.0,
+    report.expect("speed at 0.8 s, rad/s" + at, kTalkOf2009, 2.0, wheel.speed(), 1.0e-5);
+    report.expect("torque once the speed is reached, N m" + at, kTalkOf2009, 0.0,
                   static_cast<double>(wheel.joint().motor_impulse) * 4.0 / tick_s, 1.0e-3);
   }
 }

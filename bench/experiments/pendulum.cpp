@@ -8,8 +8,6 @@ namespace cycloid::experiments {
 
 using namespace solver;
 
-static constexpr double kPi = 3.14159265358979323846;
-
 /// A bob of 1 kg on a string of 1 m that starts at `amplitude` (rad) from the lowest point.
 struct Pendulum {
   World<2> world;

@@ -9,8 +9,6 @@ namespace cycloid::experiments {
 
 using namespace solver;
 
-static constexpr double kPi = 3.14159265358979323846;
-
 /// Angle about z after a minute at one turn per second, rad in (-pi, pi].
 static double planar_angle(const Tuning& tuning) {
   World<2> world = make_world(tuning, {0.0f}, 0.0);

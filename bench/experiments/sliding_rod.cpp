@@ -38,8 +38,8 @@ struct Impulses {
 };
 
 /// One tick, N s.
-static Impulses impulses_of(double friction, double speed, std::uint32_t sweeps,
-                            ContactBlockRows rows) {
+static Impulses impulses_of_rod(double friction, double speed, std::uint32_t sweeps,
+                                ContactBlockRows rows) {
   Tuning tuning = velocities_only(sweeps);
   tuning.contact_block = rows;
   World<2> world = make_rod(friction, speed, tuning);
@@ -79,7 +79,7 @@ static void check_accelerations(Report& report) {
 static void check_digging(Report& report) {
   const char* const source = "methods 3.7 #18, l = 1 m, 1 kg, 10 m/s";
   for (const double friction : {1.3, 1.4, 2.0}) {
-    const Impulses now = impulses_of(friction, -10.0, 1, ContactBlockRows::kNormalFriction);
+    const Impulses now = impulses_of_rod(friction, -10.0, 1, ContactBlockRows::kNormalFriction);
     const std::string at = " at friction " + std::to_string(friction).substr(0, 3);
     report.expect("normal impulse of the rod that digs in" + at + ", N s", source, 3.14167,
                   now.normal, 0.01);
@@ -87,11 +87,11 @@ static void check_digging(Report& report) {
     report.expect("energy that is left" + at + ", J", source, 29.50, now.energy, 0.02);
   }
   report.expect("normal impulse of the rod that digs in at friction 1, N s", source, 0.41667,
-                impulses_of(1.0, -10.0, 1, ContactBlockRows::kNormalFriction).normal, 1.0e-3);
+                impulses_of_rod(1.0, -10.0, 1, ContactBlockRows::kNormalFriction).normal, 1.0e-3);
   report.expect("the same row by row with 200 sweeps, N s", source, 0.41667,
-                impulses_of(1.0, -10.0, 200, ContactBlockRows::kNone).normal, 1.0e-3);
+                impulses_of_rod(1.0, -10.0, 200, ContactBlockRows::kNone).normal, 1.0e-3);
   report.expect("the same at friction 1.4 row by row with 200 sweeps, N s", source, 3.14167,
-                impulses_of(1.4, -10.0, 200, ContactBlockRows::kNone).normal, 0.01);
+                impulses_of_rod(1.4, -10.0, 200, ContactBlockRows::kNone).normal, 0.01);
 }
 
 /// Normal impulse over exact after each sweep, in the direction that is called harmless.
@@ -101,7 +101,7 @@ static Curve sweep_curve(double friction, ContactBlockRows rows, const char* nam
       reference::solve_direct(reference::one_step(rod, kGravity, kTick).problem).lambda[0];
   Curve curve{name, {}};
   for (std::uint32_t sweeps = 1; sweeps <= 40; ++sweeps)
-    curve.points.emplace_back(sweeps, impulses_of(friction, 10.0, sweeps, rows).normal / exact);
+    curve.points.emplace_back(sweeps, impulses_of_rod(friction, 10.0, sweeps, rows).normal / exact);
   return curve;
 }
 

@@ -30,7 +30,7 @@ static Curve check_heights(Report& report, double top, Order order,
 }
 
 /// The rate of Gauss-Seidel on a stack of n is cos^2(pi / 2n): measured far into the tail.
-static void check_rate(Report& report) {
+static void check_rate_of_stack(Report& report) {
   const std::vector<double> masses(4, 1.0);
   const std::vector<double> exact = exact_impulses(masses);
   World<2> world = stack_of_balls(masses, velocities_only(1));
@@ -60,7 +60,7 @@ Report stacks() {
   check_heights(report, 10.0, Order::kId, {1, 32, 65, 100, 138, 178, 221, 266, 313, 364});
   check_heights(report, 10.0, Order::kReverse, {1, 33, 67, 103, 142, 183, 227, 273, 321, 373});
   check_heights(report, 50.0, Order::kId, {1, 152, 305, 460, 617});
-  check_rate(report);
+  check_rate_of_stack(report);
   return report;
 }
 

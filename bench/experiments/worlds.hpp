@@ -11,6 +11,7 @@ namespace cycloid::experiments {
 // Worlds that several experiments need. Gravity is 10 m/s^2 downwards along y, a tick 1/60 s,
 // nothing sleeps, and friction is 0 unless it says otherwise.
 
+inline constexpr double kPi = 3.14159265358979323846;
 inline constexpr double kGravity = 10.0;
 inline constexpr double kTick = 1.0 / 60.0;
 /// What one tick of free fall adds, m/s.
