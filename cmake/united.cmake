@@ -1,5 +1,6 @@
 # Compiles the solver, the scenes and the protocol many files at a time, as the matrix does, and all
-# else file by file: for `./dev sanitize --quick`, which CI waits for. Given to CMake by its preset.
+# else as every build does: for `./dev sanitize --quick`, which CI waits for. Given to CMake by its
+# preset.
 include(${CMAKE_SOURCE_DIR}/tests/determinism/matrix/precompile.cmake)
 set(CMAKE_UNITY_BUILD OFF)
 
