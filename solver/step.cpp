@@ -26,6 +26,7 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
                           const Tracer<D>& traced, Lot& lot, Workers& workers,
                           StepScratch<D>& scratch) {
   const Tuning& tuning = context.tuning;
+  watch_islands(scratch);
   integrate_velocities(context, lot, workers, scratch);
   traced(Phase::kVelocities);
   bounce_contacts<D, W>(context, lot, workers, scratch);

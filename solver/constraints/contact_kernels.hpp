@@ -19,7 +19,7 @@ struct BlockRange {
 /// What a row may miss before more than sweeps is done about it, m/s.
 struct RestBounds {
   float misses;   ///< Velocities, of an island that was at rest.
-  float stirs;    ///< Velocities, of one that was not.
+  float stirs;    ///< Velocities, of one that was not, or that sways.
   float overlap;  ///< Of what overlaps, the speed that it is to be moved apart by.
 };
 

@@ -297,6 +297,7 @@ Solved IslandSolver<D>::solve(Island& island, std::span<const BodyMass<D>> masse
     if (round > 0 && island.products_left <= 0) break;
     solve_round(island, masses, motions, round == 0);
     taken = take(island, masses);
+    if (round == 0 && taken == 1.0 && island.calm) keep_load(island, motions);
   }
   correct_positions(island, step.push_speed_max);
   relieve_stress(island, masses);

@@ -144,6 +144,8 @@ class IslandSolver {
     bool weighed;                ///< They have it, but a guess that has gone wrong is weakened.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
     bool stirred;   ///< The substep before had to solve it.
+    bool calm;      ///< Of contacts alone, and the substep began with all its bodies slow,
+    bool sways;     ///< but one of them not at rest.
     bool corrects;  ///< `correction` of its nodes is not 0.
     bool closes;    ///< Its joints were closed by velocities, which are still to lose that.
   };
@@ -184,6 +186,7 @@ class IslandSolver {
   std::vector<int> island_of;              ///< By slot; -1: nothing holds it.
   std::vector<Vector> change;              ///< By node: of the velocity, m/s and rad/s.
   std::vector<Vector> correction;          ///< By node: speed for positions alone.
+  std::vector<Vector> before;              ///< By node: velocity that the substep began with.
   ByIsland slots_of;                       ///< By island, if is_sorted.
   ByIsland held_of;                        ///< Places in `held`, the same.
   bool is_sorted = false;                  ///< Since islands were last found.
@@ -222,8 +225,8 @@ class IslandSolver {
     return {first_row(group), static_cast<std::size_t>(group.count)};
   }
 
-  /// One island: reads its rows and tensions and the motions' spins; writes impulses, `change` and
-  /// `correction`.
+  /// One island: reads its rows and tensions, the motions and `before`; writes impulses, `change`
+  /// and `correction`.
   Solved solve(Island& island, std::span<const BodyMass<D>> masses,
                std::span<const Motion<D>> motions, const IslandStep& step);
   /// Whether a contact of a solved island still approaches, pulls or slides by more than this, m/s.
@@ -275,6 +278,7 @@ class IslandSolver {
   Wide take(const Island& island, std::span<const BodyMass<D>> masses);
   Wide share_of_correction(const Island& island, Wide speed) const;
   void correct_positions(Island& island, Wide push_speed_max);
+  void keep_load(const Island& island, std::span<const Motion<D>> motions);
   void relieve_stress(const Island& island, std::span<const BodyMass<D>> masses);
   void forget_conflict(const Island& island);
 

@@ -9,8 +9,9 @@ namespace cycloid::solver {
 
 /// What an island may miss before it is solved. The impulses of a solve have stopped what moved;
 /// as the next warm start they would set it going the other way, so what was just solved is held to
-/// twenty times less. Overlap may be left half a millimetre beyond the slop. At 1 mm/s a stack of
-/// thirty leans until its boxes move at 11 mm/s before it is caught, over and over.
+/// twenty times less. So is what sways, to which a solve does no such thing: a stack of thirty that
+/// may miss 0.1 mm/s leans until its boxes move at 17 mm/s before it is caught, over and over.
+/// Overlap may be left half a millimetre beyond the slop.
 inline constexpr RestBounds kRest{4.0e-4f, 2.0e-5f, 1.0e-2f};
 /// The same of joints, m/s or rad/s; and what one may miss before its island's guess is looked at
 /// for its worth where it is left to the sweeps. Swings of what is solved well miss as much.

@@ -49,6 +49,16 @@ static void gather_point(const StepContext<D>& context, const StepScratch<D>& sc
       max(rate * min(gap + context.tuning.slop, 0.0f), -context.tuning.push_speed_max));
 }
 
+/// Whether a body of a contact moves that no impulse moves: the ground that somebody rides on.
+template <int D, int W>
+static bool is_on_moving_ground(const StepScratch<D>& scratch, const ContactBlock<D, W>& block,
+                                int lane) {
+  const auto is_ground_and_moves = [&](std::uint32_t slot) {
+    return scratch.masses[slot].inverse_mass == 0.0f && is_moving(scratch.motions[slot]);
+  };
+  return is_ground_and_moves(block.body_a[lane]) || is_ground_and_moves(block.body_b[lane]);
+}
+
 template <int D, int W>
 void gather_island(const StepContext<D>& context, StepScratch<D>& scratch,
                    typename IslandSolver<D>::Island& island) {
@@ -60,8 +70,10 @@ void gather_island(const StepContext<D>& context, StepScratch<D>& scratch,
   for (int g = island.groups.begin; g < island.joints.begin; ++g) {
     IslandRows<D>& group = solver.groups[static_cast<std::size_t>(g)];
     const auto& source = solver.sources[static_cast<std::size_t>(g)];
-    gather_point<D, W>(context, scratch, blocks[static_cast<std::size_t>(source.place)], source,
-                       stiffness, group, &solver.rows[static_cast<std::size_t>(group.first)]);
+    const auto& block = blocks[static_cast<std::size_t>(source.place)];
+    gather_point<D, W>(context, scratch, block, source, stiffness, group,
+                       &solver.rows[static_cast<std::size_t>(group.first)]);
+    if (is_on_moving_ground(scratch, block, source.lane)) island.calm = false;
   }
   gather_joints(context, scratch, island);
   island.tensions.end = static_cast<int>(solver.tensions.size());

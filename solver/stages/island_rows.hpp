@@ -22,6 +22,11 @@ Vec<D, Wide> speed_at(const Motion<D>& motion, const Vec<D, Wide>& arm) {
   return widened(motion.velocity) + spin_cross(widened(motion.spin), arm);
 }
 
+template <int D>
+bool is_moving(const Motion<D>& motion) {
+  return dot(motion.velocity, motion.velocity) + dot(motion.spin, motion.spin) > 0.0f;
+}
+
 /// Takes down what holds: every contact in the order of the colouring, which is the same whatever
 /// the lanes, then every joint that does not yield. @returns whether it is what held before, in a
 /// world of as many slots, so that all that was made of it still stands.
@@ -50,7 +55,8 @@ template <int D>
 void scatter_joints(StepScratch<D>& scratch, const typename IslandSolver<D>::Island& island);
 
 /// The rows, tensions and velocities of an island as the warm start has left them, from blocks and
-/// joint rows. @pre the arms of the blocks are of the present poses.
+/// joint rows; what stands on ground that moves is not calm. @pre the arms of the blocks are of the
+/// present poses.
 template <int D, int W>
 void gather_island(const StepContext<D>& context, StepScratch<D>& scratch,
                    typename IslandSolver<D>::Island& island);

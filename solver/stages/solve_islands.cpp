@@ -31,13 +31,14 @@ static bool is_restless(const StepContext<D>& context, const StepScratch<D>& scr
                         const Unrest& all, const typename IslandSolver<D>::Island& island) {
   const IslandSolver<D>& solver = scratch.islands_solved;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const bool looks = (island.stirred ? all.stirs : all.misses) != 0;
+  const bool is_strict = island.stirred || island.sways;
+  const bool looks = (is_strict ? all.stirs : all.misses) != 0;
   for (int g = island.groups.begin; g < island.joints.begin && looks; ++g) {
     const auto& source = solver.sources[static_cast<std::size_t>(g)];
     const auto& block = blocks[static_cast<std::size_t>(source.place)];
-    if (((island.stirred ? block.stirs : block.misses) >> source.lane & 1) != 0) return true;
+    if (((is_strict ? block.stirs : block.misses) >> source.lane & 1) != 0) return true;
   }
-  return any_joint_misses(context, scratch, island, island.stirred ? kStirs : kMisses);
+  return any_joint_misses(context, scratch, island, is_strict ? kStirs : kMisses);
 }
 
 /// Tells the sweeps what is left to them of an island. Relax sweeps turn the speeds of joints into

@@ -97,6 +97,8 @@ StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D
 /// bodies up is a force. Of what islands at once hold alone.
 template <int D, int W>
 void rescale_impulses(float scale, StepScratch<D>& scratch);
+template <int D>
+void watch_islands(StepScratch<D>& scratch);
 template <int D, int W>
 void weigh_guesses(const StepContext<D>& context, const Lot& lot, Workers& workers,
                    StepScratch<D>& scratch);

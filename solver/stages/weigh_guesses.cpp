@@ -116,7 +116,7 @@ static Wide work_on_massless(const HeldPair& pair, StepScratch<D>& scratch) {
   const bool on_a = !pair.a_moves;
   if (!on_a && pair.b_moves) return 0.0;
   const Motion<D>& motion = scratch.motions[on_a ? pair.a : pair.b];
-  if (dot(motion.velocity, motion.velocity) + dot(motion.spin, motion.spin) == 0.0f) return 0.0;
+  if (!is_moving(motion)) return 0.0;
   Wide work = 0.0;
   visit_held<D, W>(
       pair, scratch,

@@ -24,6 +24,7 @@ struct BodyOnGround {
     island.products_left = 1000;
     solver.body_of = {0};
     solver.change.resize(1);
+    solver.before.resize(1);
     solver.correction.resize(1);
     for (int point = 0; point < 2; ++point) {
       solver.groups.push_back({-1, 0, -1, 2 * point, 2, true, 0.5, {}, {}});
@@ -50,6 +51,44 @@ TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
   EXPECT_EQ(body.solve(), Solved::kWhole);
   EXPECT_NEAR(body.solver.change[0][1], 1.0, 1.0e-3);
   EXPECT_NEAR(body.solver.rows[0].impulse + body.solver.rows[2].impulse, 1.0, 1.0e-3);
+}
+
+/// One that began the substep with 4 mm/s downwards, and to which gravity has added 40.
+struct BodyThatSettles : BodyOnGround {
+  explicit BodyThatSettles(bool calm) {
+    island.calm = calm;
+    solver.before[0][1] = -0.004;
+    motions[0].velocity[1] = -0.044f;
+    for (const std::size_t normal : {0, 2}) solver.rows[normal].missing = -0.044;
+  }
+  Wide pushes() const { return solver.rows[0].impulse + solver.rows[2].impulse; }
+};
+
+TEST(IslandSolver, LeavesOfACalmIslandWhatItCarriesAndNotWhatStoppedIt) {
+  for (const bool calm : {false, true}) {
+    BodyThatSettles body(calm);
+    EXPECT_EQ(body.solve(), Solved::kWhole);
+    EXPECT_NEAR(body.solver.change[0][1], 0.044, 1.0e-4);
+    EXPECT_NEAR(body.pushes(), calm ? 0.040 : 0.044, 1.0e-4);
+  }
+}
+
+// Of rows so soft that a solve stops a tenth of what it should, the guess has a quarter of what
+// would stop the rest, as far as it goes by one more solve.
+TEST(IslandSolver, LeavesAPartOfWhatWouldStopWhatGoesOn) {
+  BodyThatSettles body(true);
+  body.masses[0].inverse_mass = 1.0f / 18000.0f;  // Two rows of 1,000 kg.
+  EXPECT_EQ(body.solve(), Solved::kWhole);
+  const Wide stops = 18000.0 * 0.1;
+  EXPECT_NEAR(body.solver.change[0][1], 0.0044, 1.0e-6);
+  EXPECT_NEAR(body.pushes(), stops * (0.040 + 0.25 * (0.044 - 0.0044)), 1.0e-3);
+}
+
+TEST(IslandSolver, LeavesTheWholeGuessWhereSomethingOfACalmIslandSlides) {
+  BodyThatSettles body(true);
+  for (const std::size_t tangent : {1, 3}) body.solver.rows[tangent].missing = 3.0;
+  body.solve();
+  EXPECT_NEAR(body.pushes(), 0.044, 1.0e-4);
 }
 
 /// One that falls and slides, of which no step is whole.

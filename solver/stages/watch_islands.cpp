@@ -1,0 +1,54 @@
+#include <algorithm>
+
+#include "solver/stages/stages.hpp"
+
+namespace cycloid::solver {
+
+/// As fast as the bodies of a calm island are at most, m/s and rad/s, along any axis. Thirty boxes
+/// that stand sway at half of it; what rocks is faster, and comes to rest by the impulses of its
+/// blows.
+static constexpr Wide kCalm = 0.01;
+/// As fast as one of them is where it sways: slower ones miss no more than what roundings do.
+static constexpr Wide kSways = 5.0e-4;
+
+/// Takes down with which velocities the bodies of an island begin. @returns the greatest along any
+/// axis, m/s or rad/s.
+template <int D>
+static Wide note_velocities(const typename IslandSolver<D>::Island& island,
+                            StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  Wide most = 0.0;
+  for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
+    const auto node = static_cast<std::size_t>(n);
+    const Motion<D>& motion = scratch.motions[solver.body_of[node]];
+    auto& before = solver.before[node];
+    for (int i = 0; i < D; ++i) before[i] = static_cast<Wide>(motion.velocity[i]);
+    for (int i = 0; i < Dim<D>::kSpin; ++i) before[D + i] = static_cast<Wide>(motion.spin[i]);
+    for (int i = 0; i < Dim<D>::kFreedoms; ++i) most = std::max(most, magnitude(before[i]));
+  }
+  return most;
+}
+
+/// Sees which islands are calm before forces act on them: for these a solve leaves a guess of their
+/// load alone (IslandSolver::keep_load), and those of them that sway are held to less (kRest).
+///
+/// Reads velocities; writes those of islands of contacts alone into the island solver, and which
+/// are calm or sway. Serial; no body is of two islands.
+template <int D>
+void watch_islands(StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  if (!solver.acts) return;
+  solver.before.resize(solver.body_of.size());
+  for (auto& island : solver.islands) {
+    island.calm = island.sways = false;
+    if (!island.taken || island.joint_count > 0) continue;
+    const Wide fastest = note_velocities(island, scratch);
+    island.calm = fastest < kCalm;
+    island.sways = island.calm && fastest > kSways;
+  }
+}
+
+template void watch_islands(StepScratch<2>&);
+template void watch_islands(StepScratch<3>&);
+
+}  // namespace cycloid::solver
