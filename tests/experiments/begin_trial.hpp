@@ -2,6 +2,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstdint>
 #include <stdexcept>
 #include <string>
 #include <utility>
@@ -26,6 +27,12 @@ inline scenes::Simulation begin_trial(const std::string& name, const solver::Tun
   solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
   EXPECT_TRUE(simulation.ok()) << simulation.error().field;
   return std::move(simulation.value());
+}
+
+/// Whether anything was factored in the last tick: each product of blocks counts beside the sweeps.
+inline bool was_solved(const solver::Statistics& statistics, const solver::Tuning& tuning) {
+  return statistics.rows > std::uint64_t{statistics.rows_per_sweep} * statistics.substeps *
+                               (tuning.sweeps + tuning.relax_sweeps);
 }
 
 /// Steps a trial with other workers and lanes beside one, and compares each digest.

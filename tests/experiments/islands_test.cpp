@@ -104,12 +104,6 @@ TEST(IslandsAtOnce, HoldWhatSoftSweepsLetFall) {
   }
 }
 
-/// Whether anything was factored in the last tick: each product of blocks counts beside the sweeps.
-static bool was_solved(const solver::Statistics& statistics, const solver::Tuning& tuning) {
-  return statistics.rows > std::uint64_t{statistics.rows_per_sweep} * tuning.substeps *
-                               (tuning.sweeps + tuning.relax_sweeps);
-}
-
 // The impulses that have stopped a load would lift it as the next warm start, and so on for ever:
 // what was solved is solved again until nothing is left. Nor do gaps of a rounding count, which
 // would set it going again.

@@ -37,7 +37,7 @@ static float impulse_of(const World<2>& world) {
 }
 
 // Both move as slowly as what is calm, but that is not what a solve would stop: with a guess of the
-// load and that taken from it, the platform would push by an eighth too much.
+// load and that taken from it, impulses would be 15 N s of 333 off.
 TEST(CalmIslands, WhatRidesSlowlyIsCarriedByItsWeight) {
   for (const float rising_speed : {0.0f, 0.005f, -0.005f}) {
     LoadedPlatform loaded = make_loaded_platform(rising_speed);

@@ -22,17 +22,17 @@ void expect_signed_distance(const SignedDistance<D>& found, float distance, floa
 
 TYPED_TEST(Particles, DistanceToBallAndHalfSpace) {
   constexpr int D = TypeParam::kD;
-  expect_signed_distance(distance_from(ball<D>(2.0f), spot<D>(3.0f, 4.0f)), 3.0f, 0.6f, 0.8f);
-  expect_signed_distance(distance_from(ball<D>(2.0f), spot<D>(0.0f, -0.5f)), -1.5f, 0.0f, -1.0f);
+  expect_signed_distance(distance_from(ball<D>(2.0f), at<D>(3.0f, 4.0f)), 3.0f, 0.6f, 0.8f);
+  expect_signed_distance(distance_from(ball<D>(2.0f), at<D>(0.0f, -0.5f)), -1.5f, 0.0f, -1.0f);
   expect_signed_distance(distance_from(ball<D>(2.0f), Vec<D>::zero()), -2.0f, 1.0f, 0.0f);
   ShapeDef<D> plane;
   plane.kind = ShapeKind::kHalfSpace;
-  plane.normal = spot<D>(0.6f, 0.8f);
+  plane.normal = at<D>(0.6f, 0.8f);
   plane.offset = 1.0f;
-  expect_signed_distance(distance_from(plane, spot<D>(3.0f, 4.0f)), 4.0f, 0.6f, 0.8f);
-  expect_signed_distance(distance_from(plane, spot<D>(-3.0f, -4.0f)), -6.0f, 0.6f, 0.8f);
-  expect_signed_distance(distance_from(plane, spot<D>(3.0f, 4.0f), spot<D>(3.0f, 4.0f)), -1.0f,
-                         0.6f, 0.8f);
+  expect_signed_distance(distance_from(plane, at<D>(3.0f, 4.0f)), 4.0f, 0.6f, 0.8f);
+  expect_signed_distance(distance_from(plane, at<D>(-3.0f, -4.0f)), -6.0f, 0.6f, 0.8f);
+  expect_signed_distance(distance_from(plane, at<D>(3.0f, 4.0f), at<D>(3.0f, 4.0f)), -1.0f, 0.6f,
+                         0.8f);
 }
 
 TEST(ShapeDistance, ToPolygonInsideOutsideAndAtCorners) {
@@ -95,7 +95,7 @@ TYPED_TEST(Particles, RopeOverBallDoesNotPenetrate) {
   constexpr int D = TypeParam::kD;
   ParticleScene<D> scene;
   add_obstacle(scene, ball<D>(0.5f));
-  scene.add_rope(spot<D>(-1.0f, 0.7f), 41, 0.05f);
+  scene.add_rope(at<D>(-1.0f, 0.7f), 41, 0.05f);
   for (int tick = 0; tick < 120; ++tick) {
     scene.run(1);
     EXPECT_GT(scene.clearance(), -0.001f);
@@ -108,7 +108,7 @@ TYPED_TEST(Particles, RopeOverBallDoesNotPenetrate) {
 TEST(ParticleCollision, RopeOverBoxDoesNotPenetrate) {
   ParticleScene<2> scene;
   add_obstacle(scene, box(0.5f, 0.5f), {{0.0f, 0.0f}}, turned(0.2f));
-  scene.add_rope(spot<2>(-1.0f, 0.9f), 41, 0.05f);
+  scene.add_rope(at<2>(-1.0f, 0.9f), 41, 0.05f);
   for (int tick = 0; tick < 120; ++tick) {
     scene.run(1);
     EXPECT_GT(scene.clearance(), -0.001f);
@@ -123,8 +123,8 @@ TYPED_TEST(Particles, SlopeHoldsOrLetsSlideByCoulomb) {
     for (const float mu : {0.0f, 0.3f, 0.5f, 0.7f, 0.8f, 1.5f}) {
       ParticleScene<D> scene;
       scene.world = make_world<D>(with_gravity<D>({mu, 0.0f}));
-      add_ground<D>(scene.world, spot<D>(-0.6f, 0.8f));  // Downhill is (-0.8, -0.6).
-      const Vec<D> start = spot<D>(-0.8f * distance - 0.006f, -0.6f * distance + 0.008f);
+      add_ground<D>(scene.world, at<D>(-0.6f, 0.8f));  // Downhill is (-0.8, -0.6).
+      const Vec<D> start = at<D>(-0.8f * distance - 0.006f, -0.6f * distance + 0.008f);
       scene.add_particle(start);
       scene.run(60);
       const float moved = length(scene.particles[0].position - start);
@@ -145,8 +145,8 @@ TYPED_TEST(Particles, OneThatLandsAndSticksHasNotMovedAlongTheGround) {
   add_ground<D>(scene.world, up<D>());
   scene.gravity = Vec<D>::zero();
   scene.tuning.substeps = 1;
-  scene.add_particle(spot<D>(0.0f, 0.01f + 5.0f * kParticleTick));
-  scene.particles[0].velocity = spot<D>(1.0f, -10.0f);
+  scene.add_particle(at<D>(0.0f, 0.01f + 5.0f * kTick));
+  scene.particles[0].velocity = at<D>(1.0f, -10.0f);
   scene.run(1);
   EXPECT_NEAR(scene.particles[0].position[0], 0.0f, 1.0e-8f);
   EXPECT_NEAR(scene.particles[0].position[1], 0.01f, 2.0e-6f);
@@ -157,8 +157,8 @@ TYPED_TEST(Particles, NothingPassesAGroundAtAnySpeed) {
   for (const float speed : {1.0f, 30.0f, 1000.0f}) {
     ParticleScene<D> scene;
     add_ground<D>(scene.world, up<D>());
-    scene.add_particle(spot<D>(0.0f, 3.0f));
-    scene.particles[0].velocity = spot<D>(speed, -speed);
+    scene.add_particle(at<D>(0.0f, 3.0f));
+    scene.particles[0].velocity = at<D>(speed, -speed);
     scene.run(60);
     EXPECT_NEAR(scene.particles[0].position[1], 0.01f, 1.0e-5f);
   }
@@ -209,7 +209,7 @@ TEST(ParticleCollision, RopeStaysInARoomOfThinWalls) {
     add_obstacle(scene, side < 2 ? box(0.01f, 1.01f) : box(1.01f, 0.01f),
                  middle + rotate(rotation, wall), rotation);
   }
-  scene.add_rope(middle - spot<2>(0.5f, 0.0f), 21, 0.05f);
+  scene.add_rope(middle - at<2>(0.5f, 0.0f), 21, 0.05f);
   for (int tick = 0; tick < 120; ++tick) {
     for (std::size_t i = 0; tick % 20 == 0 && i < 21; ++i)
       scene.particles[i].velocity =
@@ -227,9 +227,9 @@ TYPED_TEST(Particles, LiftTakesAParticleAlongAtItsOwnSpeed) {
   ParticleScene<D> scene;
   BodyDef<D> lift;
   lift.kind = BodyKind::kKinematic;
-  lift.velocity = spot<D>(0.0f, 4.0f);
+  lift.velocity = at<D>(0.0f, 4.0f);
   add(scene.world, lift, ball<D>(1.0f));
-  scene.add_particle(spot<D>(0.0f, 1.01f));
+  scene.add_particle(at<D>(0.0f, 1.01f));
   for (int tick = 0; tick < 60; ++tick) {
     step(scene.world, 1);
     scene.run(1);
@@ -244,15 +244,15 @@ TYPED_TEST(Particles, BeltTakesAParticleAlong) {
   ParticleScene<D> scene;
   BodyDef<D> belt;
   belt.kind = BodyKind::kKinematic;
-  belt.velocity = spot<D>(2.0f, 0.0f);
+  belt.velocity = at<D>(2.0f, 0.0f);
   ShapeDef<D> shape = ball<D>(100.0f);
-  shape.points = {spot<D>(0.0f, -100.0f)};
+  shape.points = {at<D>(0.0f, -100.0f)};
   add(scene.world, belt, shape);
-  scene.add_particle(spot<D>(0.0f, 0.01f));
+  scene.add_particle(at<D>(0.0f, 0.01f));
   for (int tick = 0; tick < 60; ++tick) {
     step(scene.world, 1);
     scene.run(1);
-    const float expected = std::min(6.0f * kParticleTick * static_cast<float>(tick + 1), 2.0f);
+    const float expected = std::min(6.0f * kTick * static_cast<float>(tick + 1), 2.0f);
     EXPECT_NEAR(scene.particles[0].velocity[0], expected, 0.03f) << tick;
   }
   EXPECT_NEAR(scene.particles[0].velocity[0], 2.0f, 0.02f);
@@ -262,7 +262,7 @@ TYPED_TEST(Particles, FilterLetsThrough) {
   constexpr int D = TypeParam::kD;
   ParticleScene<D> scene;
   add_ground<D>(scene.world, up<D>());
-  scene.add_particle(spot<D>(0.0f, 1.0f));
+  scene.add_particle(at<D>(0.0f, 1.0f));
   scene.particles[0].filter.mask = 2;
   scene.run(60);
   EXPECT_LT(scene.particles[0].position[1], -3.9f);

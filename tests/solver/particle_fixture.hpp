@@ -6,21 +6,11 @@
 
 namespace cycloid::solver {
 
-inline constexpr float kParticleTick = 1.0f / 60.0f;
-
-template <int D>
-Vec<D> spot(float x, float y) {
-  Vec<D> r = Vec<D>::zero();
-  r[0] = x;
-  r[1] = y;
-  return r;
-}
-
 /// Particles and what they collide with; gravity is 10 m/s^2, downwards along axis 1.
 template <int D>
 struct ParticleScene {
   World<D> world = make_world<D>(with_gravity<D>());
-  Vec<D> gravity = spot<D>(0.0f, -10.0f);
+  Vec<D> gravity = at<D>(0.0f, -10.0f);
   ParticleTuning tuning;
   std::vector<Particle<D>> particles;
   std::vector<Link> links;
@@ -41,14 +31,13 @@ struct ParticleScene {
   /// From `start` on, `count` particles `spacing` apart along axis 0, each linked to the next.
   void add_rope(Vec<D> start, int count, float spacing) {
     for (int i = 0; i < count; ++i) {
-      const auto last = add_particle(start + spot<D>(spacing * static_cast<float>(i), 0.0f));
+      const auto last = add_particle(start + at<D>(spacing * static_cast<float>(i), 0.0f));
       if (i > 0) add_link(last - 1, last, spacing);
     }
   }
   void run(int ticks) {
     for (int i = 0; i < ticks; ++i)
-      move_particles<D>(kParticleTick, gravity, tuning, world.state(), particles, links, pins,
-                        scratch);
+      move_particles<D>(kTick, gravity, tuning, world.state(), particles, links, pins, scratch);
   }
   float stretch() const {
     float worst = 0.0f;

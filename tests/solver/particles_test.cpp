@@ -6,17 +6,17 @@ TYPED_TEST(Particles, LinkSharesItsErrorByInverseMassAndLeavesNone) {
   constexpr int D = TypeParam::kD;
   for (const float weight : {0.0f, 0.25f, 1.0f, 3.0f}) {
     ParticleScene<D> scene;
-    scene.add_particle(spot<D>(0.0f, 0.0f), weight);
-    scene.add_particle(spot<D>(3.0f, 4.0f));
+    scene.add_particle(at<D>(0.0f, 0.0f), weight);
+    scene.add_particle(at<D>(3.0f, 4.0f));
     scene.add_link(0, 1, 3.0f);
     std::vector<ParticleMotion<D>> motions(2, {Vec<D>::zero(), Vec<D>::zero(), 1.0f});
     motions[0].inverse_mass = weight;
     std::vector<float> lambdas(1);
-    project_links<D>(kParticleTick, scene.particles, scene.links, motions, lambdas);
+    project_links<D>(kTick, scene.particles, scene.links, motions, lambdas);
     const float share = weight / (weight + 1.0f);  // Of an error of 2 m.
     EXPECT_NEAR(length(motions[0].displacement), 2.0f * share, 1.0e-6f);
     EXPECT_NEAR(length(motions[1].displacement), 2.0f * (1.0f - share), 1.0e-6f);
-    const Vec<D> d = spot<D>(3.0f, 4.0f) + motions[1].displacement - motions[0].displacement;
+    const Vec<D> d = at<D>(3.0f, 4.0f) + motions[1].displacement - motions[0].displacement;
     EXPECT_NEAR(length(d), 3.0f, 1.0e-6f);
   }
 }
@@ -26,9 +26,9 @@ TYPED_TEST(Particles, FallLikeSymplecticEulerAlsoFarFromTheOrigin) {
   for (const float far : {0.0f, 4096.0f}) {
     ParticleScene<D> scene;
     scene.tuning.substeps = 4;
-    scene.add_particle(spot<D>(far, far));
+    scene.add_particle(at<D>(far, far));
     scene.run(60);
-    const float h = kParticleTick / static_cast<float>(scene.tuning.substeps);
+    const float h = kTick / static_cast<float>(scene.tuning.substeps);
     // x(t) = g t^2 / 2 + g h t / 2. At 4 km a place of a float is 0.5 mm.
     EXPECT_NEAR(scene.particles[0].position[1] - far, -5.0f - 5.0f * h, far > 0.0f ? 1e-2f : 2e-5f);
     EXPECT_NEAR(scene.particles[0].velocity[1], -10.0f, 1.0e-4f);
@@ -44,7 +44,7 @@ TYPED_TEST(Particles, VelocityIsDisplacementPerTime) {
   scene.add_link(0, 1, 0.7f);  // Coincident: parts along axis 0, bent by gravity.
   scene.run(1);
   for (int i = 0; i < D; ++i)
-    EXPECT_EQ(scene.particles[1].velocity[i], scene.particles[1].position[i] / kParticleTick);
+    EXPECT_EQ(scene.particles[1].velocity[i], scene.particles[1].position[i] / kTick);
   EXPECT_GT(length(scene.particles[1].velocity), 1.0f);
 }
 
@@ -52,8 +52,8 @@ TYPED_TEST(Particles, CoincidentOnesPartAlongTheFirstAxis) {
   constexpr int D = TypeParam::kD;
   ParticleScene<D> scene;
   scene.gravity = Vec<D>::zero();
-  scene.add_particle(spot<D>(1.0f, 1.0f));
-  scene.add_particle(spot<D>(1.0f, 1.0f));
+  scene.add_particle(at<D>(1.0f, 1.0f));
+  scene.add_particle(at<D>(1.0f, 1.0f));
   scene.add_link(0, 1, 0.5f);
   scene.tuning.substeps = 1;
   scene.run(1);
@@ -70,7 +70,7 @@ TYPED_TEST(Particles, HangingClothStretchesByLessThanOnePercent) {
     scene.gravity[1] = -gravity;
     for (int row = 0; row < 20; ++row)
       for (int column = 0; column < 20; ++column) {
-        Vec<D> position = spot<D>(0.05f * static_cast<float>(column), 0.0f);
+        Vec<D> position = at<D>(0.05f * static_cast<float>(column), 0.0f);
         position[D - 1] = -0.05f * static_cast<float>(row);
         const auto id = scene.add_particle(position, row == 0 ? 0.0f : 1.0f);
         if (column > 0) scene.add_link(id - 1, id, 0.05f);
@@ -87,7 +87,7 @@ TYPED_TEST(Particles, HangingClothStretchesByLessThanOnePercent) {
 TYPED_TEST(Particles, SwingingChainStretchesByLessThanOnePercent) {
   constexpr int D = TypeParam::kD;
   ParticleScene<D> scene;
-  scene.add_rope(spot<D>(0.0f, 5.0f), 20, 0.05f);
+  scene.add_rope(at<D>(0.0f, 5.0f), 20, 0.05f);
   scene.particles[0].inverse_mass = 0.0f;
   scene.run(120);
   EXPECT_LT(scene.stretch(), 0.01f);
@@ -100,7 +100,7 @@ TYPED_TEST(Particles, CompliantLinkHangsAtItsForceTimesCompliance) {
   ParticleScene<D> scene;
   scene.tuning.damping = 5.0f;
   scene.add_particle(Vec<D>::zero(), 0.0f);
-  scene.add_particle(spot<D>(0.0f, -1.0f), 0.5f);
+  scene.add_particle(at<D>(0.0f, -1.0f), 0.5f);
   scene.add_link(0, 1, 1.0f, 0.01f);
   scene.run(300);
   EXPECT_NEAR(scene.particles[1].position[1], -1.0f - 2.0f * 10.0f * 0.01f, 1.0e-3f);
@@ -130,13 +130,13 @@ TYPED_TEST(Particles, FreeRopeKeepsItsMomentum) {
 TYPED_TEST(Particles, PinFollowsItsBodyAndTheLowestPinHolds) {
   constexpr int D = TypeParam::kD;
   ParticleScene<D> scene;
-  const BodyId id = add_at<D>(scene.world, spot<D>(1.0f, 2.0f), ball<D>(0.1f));
+  const BodyId id = add_at<D>(scene.world, at<D>(1.0f, 2.0f), ball<D>(0.1f));
   ASSERT_TRUE(scene.world.set_gravity(Vec<D>::zero()).ok());
-  ASSERT_TRUE(scene.world.set_velocity(id, spot<D>(3.0f, 0.0f), Spin<D>::zero()).ok());
-  scene.add_particle(spot<D>(1.0f, 1.5f));
-  scene.pins.push_back({0, 0, 0, id.index, spot<D>(7.0f, 7.0f)});  // Free: has no say.
-  scene.pins.push_back({0, 1, 0, id.index, spot<D>(0.0f, -0.5f)});
-  scene.pins.push_back({0, 1, 0, id.index, spot<D>(0.0f, 0.5f)});
+  ASSERT_TRUE(scene.world.set_velocity(id, at<D>(3.0f, 0.0f), Spin<D>::zero()).ok());
+  scene.add_particle(at<D>(1.0f, 1.5f));
+  scene.pins.push_back({0, 0, 0, id.index, at<D>(7.0f, 7.0f)});  // Free: has no say.
+  scene.pins.push_back({0, 1, 0, id.index, at<D>(0.0f, -0.5f)});
+  scene.pins.push_back({0, 1, 0, id.index, at<D>(0.0f, 0.5f)});
   for (int tick = 1; tick <= 30; ++tick) {
     step(scene.world, 1);
     scene.run(1);
@@ -149,7 +149,7 @@ TYPED_TEST(Particles, PinFollowsItsBodyAndTheLowestPinHolds) {
 TYPED_TEST(Particles, FreeSlotsAreLeftAlone) {
   constexpr int D = TypeParam::kD;
   ParticleScene<D> scene;
-  scene.add_rope(spot<D>(0.0f, 0.0f), 3, 0.5f);
+  scene.add_rope(at<D>(0.0f, 0.0f), 3, 0.5f);
   scene.particles[1].kind = 0;
   scene.links[0].length = 9.0f;
   scene.run(30);
@@ -162,10 +162,10 @@ TYPED_TEST(Particles, TwoRunsAreEqualToTheBitWhateverTheScratchHeld) {
   constexpr int D = TypeParam::kD;
   ParticleScene<D> one;
   add_obstacle(one, ball<D>(0.5f));
-  one.add_rope(spot<D>(-1.2f, 0.7f), 41, 0.05f);
+  one.add_rope(at<D>(-1.2f, 0.7f), 41, 0.05f);
   ParticleScene<D> other;
   add_obstacle(other, ball<D>(0.5f));
-  other.add_rope(spot<D>(3.0f, 0.7f), 90, 0.07f);
+  other.add_rope(at<D>(3.0f, 0.7f), 90, 0.07f);
   other.run(3);
   other.particles = one.particles;
   other.links = one.links;

@@ -81,7 +81,7 @@ BodyId add_at(World<D>& world, Vec<D> position, const ShapeDef<D>& shape) {
   return add(world, def, shape);
 }
 
-/// Boxes of 1 m on one another, the lowest on the ground.
+/// Boxes of 1 m on one another, the lowest from height 0 to 1: on the plane of add_ground.
 inline std::vector<BodyId> add_stack(World<2>& world, int count, float x = 0.0f) {
   std::vector<BodyId> boxes;
   for (int i = 0; i < count; ++i)
