@@ -103,15 +103,16 @@ TEST(WrongFrictionPlayer, IsReportedAndTheReportIsRepeatedWithTheServersBuildInT
   const std::string reports = folder.file("reports");
   std::filesystem::create_directory(reports);
   const std::string config = folder.file("serve.toml");
-  // Slow, so that the wall has not come to rest when the client is in.
+  // Made by the client's join, however late that is, so that the wall has not come to rest then.
   write_text(config, "[server]\nport = 0\n[operation]\nport = 0\ndesync_directory = \"" + reports +
                          "\"\n[limits]\ndigest_ticks = 5\n[template.t]\nscene = \"wall\"\n"
-                         "tick_rate_hz = 20.0\n[[room]]\nname = \"arena\"\ntemplate = \"t\"\n");
+                         "tick_rate_hz = 20.0\non_first_join = true\nempty_ttl_s = 60\n");
   Background server({"serve", "--config", config, "--json"});
   const std::string address = server.wait_for("listening on ");
   ASSERT_NE(address, "");
-  const Ran played = run_other(CYCLOID_WRONG_FRICTION, {"join", address, "wall", "--seat",
-                                                        "spectator", "--ticks", "60", "--json"});
+  const Ran played = run_other(
+      CYCLOID_WRONG_FRICTION,
+      {"join", address, "wall", "--room", "t:1", "--seat", "spectator", "--ticks", "60", "--json"});
   EXPECT_EQ(played.exit, 1) << played.err;
   EXPECT_GT(played.json()["mismatches"], 0) << played.out;
   EXPECT_GT(played.json()["resyncs"], 0);
