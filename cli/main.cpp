@@ -32,8 +32,10 @@ void add_salvage_option(CLI::App* command, LoadOptions& options) {
 
 void add_lanes_option(CLI::App* command, int& lanes) {
   command
-      ->add_option("--lanes", lanes,
-                   "Contacts an instruction: 1, 4, 8, 16, or 0 for what suits; changes no bit")
+      ->add_option(
+          "--lanes", lanes,
+          "Contacts an instruction: 1, 4, 8, 16 as far as the processor has them, or 0 for "
+          "what suits; changes no bit")
       ->capture_default_str()
       ->check(CLI::IsMember({0, 1, 4, 8, 16}));
 }

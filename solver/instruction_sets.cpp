@@ -3,7 +3,7 @@
 namespace cycloid::solver {
 
 bool has_avx2_kernels() {
-#ifdef CYCLOID_AVX2  // Set by solver/CMakeLists.txt where the units of kAvx2Lanes have the flag.
+#ifdef CYCLOID_AVX_KERNELS  // See lane_widths.hpp.
   return __builtin_cpu_supports("avx2") != 0;
 #else
   return false;
@@ -11,7 +11,7 @@ bool has_avx2_kernels() {
 }
 
 bool has_avx512_kernels() {
-#ifdef CYCLOID_AVX512
+#ifdef CYCLOID_AVX_KERNELS
   return __builtin_cpu_supports("avx512f") != 0 && __builtin_cpu_supports("avx512vl") != 0 &&
          __builtin_cpu_supports("avx512dq") != 0;
 #else

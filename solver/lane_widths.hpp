@@ -1,5 +1,8 @@
 #pragma once
 
+#include <tuple>
+#include <utility>
+
 #include "solver/instruction_sets.hpp"
 #include "solver/lanes.hpp"
 
@@ -7,17 +10,46 @@ namespace cycloid::solver {
 
 /// Which width a kernel runs in. None changes a bit; they differ in how long they take.
 
-/// A width in the instruction set that this processor has for it.
+template <int... W>
+struct Widths {};
+
+/// Those that kernels are compiled for. Wider ones than 4 for the instruction sets alone that have
+/// vectors of that width.
+#ifdef CYCLOID_AVX_KERNELS  // Set by solver/CMakeLists.txt, which compiles the units of both sets.
+inline constexpr bool kHasAvxKernels = true;
+using LaneWidths = Widths<1, 4, kAvx2Lanes, kAvx512Lanes>;
+#else
+inline constexpr bool kHasAvxKernels = false;
+using LaneWidths = Widths<1, 4>;
+#endif
+
+template <template <int, int> class Of, int D, class>
+struct TupleOfWidths;
+template <template <int, int> class Of, int D, int... W>
+struct TupleOfWidths<Of, D, Widths<W...>> {
+  using Tuple = std::tuple<Of<D, W>...>;
+};
+/// One of every width.
+template <template <int, int> class Of, int D>
+using ByWidth = typename TupleOfWidths<Of, D, LaneWidths>::Tuple;
+
+/// Explicitly instantiated, it makes what members of `Of<D, W>` point at, of every width, in the
+/// plane and in space.
+template <template <int, int> class Of>
+struct AtEveryWidth {
+  static constexpr std::pair<ByWidth<Of, 2>, ByWidth<Of, 3>> kAll{};
+};
+
+/// The widest that this processor has of at most so many lanes.
 inline int in_best_set(int lanes) {
-  if (lanes == 8 && has_avx2_kernels()) return kAvx2Lanes;
-  if (lanes == 16 && has_avx512_kernels()) return kAvx512Lanes;
-  return lanes;
+  if (lanes >= 16 && has_avx512_kernels()) return kAvx512Lanes;
+  if (lanes >= 8 && has_avx2_kernels()) return kAvx2Lanes;
+  return lanes < 4 ? 1 : 4;
 }
 
 /// The width for what fills as many lanes as it likes; 0 stands for the widest of one instruction.
 inline int widest_lanes(int lanes) {
-  if (lanes != 0) return in_best_set(lanes);
-  return has_avx512_kernels() ? kAvx512Lanes : has_avx2_kernels() ? kAvx2Lanes : 4;
+  return in_best_set(lanes == 0 ? kLaneCount<kAvx512Lanes> : lanes);
 }
 
 /// The width that solves constraints soonest: the wider one where it is there and saves blocks, of
@@ -42,30 +74,24 @@ constexpr int count_for_lanes(int count) {
 template <int W>
 inline constexpr int kFewLanes = kLaneCount<W> < 4 ? W : 4;
 
-/// Calls act.template operator()<W>() for the width W.
+/// Calls act.template operator()<W>() for the width W, one of LaneWidths.
 template <class Act>
 decltype(auto) at_width(int width, Act&& act) {
-  switch (width) {
-    case 1:
-      return act.template operator()<1>();
-    case 8:
-      return act.template operator()<8>();
-    case 16:
-      return act.template operator()<16>();
-    case kAvx2Lanes:
-      return act.template operator()<kAvx2Lanes>();
-    case kAvx512Lanes:
-      return act.template operator()<kAvx512Lanes>();
-    default:
-      return act.template operator()<4>();
+  if constexpr (kHasAvxKernels) {
+    if (width == kAvx512Lanes) return act.template operator()<kAvx512Lanes>();
+    if (width == kAvx2Lanes) return act.template operator()<kAvx2Lanes>();
   }
+  if (width == 1) return act.template operator()<1>();
+  return act.template operator()<4>();
 }
 
-/// The same for the widest that this processor has, where the width shows in no result.
+/// The same for the widest that this processor has, of 4 or more.
 template <class Act>
 decltype(auto) at_widest(Act&& act) {
-  if (has_avx512_kernels()) return act.template operator()<kAvx512Lanes>();
-  if (has_avx2_kernels()) return act.template operator()<kAvx2Lanes>();
+  if constexpr (kHasAvxKernels) {
+    if (has_avx512_kernels()) return act.template operator()<kAvx512Lanes>();
+    if (has_avx2_kernels()) return act.template operator()<kAvx2Lanes>();
+  }
   return act.template operator()<4>();
 }
 

@@ -18,6 +18,7 @@
 #include "solver/constraints/pin_block.hpp"
 #include "solver/direct/island_solver.hpp"
 #include "solver/direct/tree_solver.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/motion.hpp"
 #include "solver/particles/move_particles.hpp"
 #include "solver/queries/time_of_impact.hpp"
@@ -202,9 +203,7 @@ struct StepScratch : ContactList<D> {
   std::vector<float> fractions;              ///< Of meetings: of the tick, at which they do.
   ParticleScratch<D> particles;
   WorldState<D> before;  ///< Of worlds with particles, to undo a tick that faults.
-  std::tuple<ContactBlocks<D, 1>, ContactBlocks<D, 4>, ContactBlocks<D, 8>, ContactBlocks<D, 16>,
-             ContactBlocks<D, kAvx2Lanes>, ContactBlocks<D, kAvx512Lanes>>
-      contact_blocks;                          ///< Only that of the chosen width is filled.
+  ByWidth<ContactBlocks, D> contact_blocks;    ///< Only that of the chosen width is filled.
   std::vector<Acceleration<D>> accelerations;  ///< Of moving_bodies.
   std::uint32_t substeps = 0;                  ///< Of this tick.
   bool slides_far = false;  ///< Some body moves by more than a metre in this tick.

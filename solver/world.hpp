@@ -99,8 +99,9 @@ class World {
   void use_step_memory(std::shared_ptr<StepMemory<D>> memory) { step_memory_ = std::move(memory); }
   /// Gives back the memory that the state does not fill. Changes no bit.
   void trim();
-  /// How many contacts one instruction solves: 1, 4, 8 or 16; 0, as at first, leaves the choice to
-  /// each step, by the contacts that there are and what the processor has. Changes no bit.
+  /// How many contacts one instruction solves: 1, 4, 8 or 16, or the most below that for which the
+  /// processor has vectors, of 8 with AVX2, of 16 with AVX-512; 0, as at first, leaves the choice
+  /// to each step, by the contacts that there are. Else kInvalid "lanes". Changes no bit.
   Error set_lanes(int lanes);
   /// Of how many contacts are solved together, from the first substep of a step to the last, before
   /// or beside others that they do not touch: 1 and more; 0, as at first, leaves the choice to each

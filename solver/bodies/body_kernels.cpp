@@ -6,7 +6,5 @@ namespace cycloid::solver {
 
 template struct BodyKernels<1>;
 template struct BodyKernels<4>;
-template struct BodyKernels<8>;
-template struct BodyKernels<16>;
 
 }  // namespace cycloid::solver

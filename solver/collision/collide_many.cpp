@@ -87,10 +87,10 @@ static void collide_in_lanes(const Collider<2>& collider, const PlacedPair<2>* p
     const int left = waiting.count - begin;
     const std::uint32_t* next = waiting.pairs + begin;
     // What would leave half of the sixteen lanes empty takes as long in eight.
-    if (W == kAvx512Lanes && left <= kLaneCount<kAvx2Lanes>) {
+    if constexpr (W == kAvx512Lanes) {
       if (4 * left <= kLaneCount<kAvx2Lanes>) break;
-      collide_block<Of, kAvx2Lanes>(collider, pairs, next, left, manifolds);
-      return;
+      if (left <= kLaneCount<kAvx2Lanes>)
+        return collide_block<Of, kAvx2Lanes>(collider, pairs, next, left, manifolds);
     }
     const int used = left < kLaneCount<W> ? left : kLaneCount<W>;
     if (4 * used <= kLaneCount<W>) break;

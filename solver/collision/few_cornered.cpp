@@ -4,7 +4,5 @@ namespace cycloid::solver {
 
 template struct FewCornered<1>;
 template struct FewCornered<4>;
-template struct FewCornered<8>;
-template struct FewCornered<16>;
 
 }  // namespace cycloid::solver

@@ -4,11 +4,7 @@ namespace cycloid::solver {
 
 template struct ContactKernels<2, 1>;
 template struct ContactKernels<2, 4>;
-template struct ContactKernels<2, 8>;
-template struct ContactKernels<2, 16>;
 template struct ContactKernels<3, 1>;
 template struct ContactKernels<3, 4>;
-template struct ContactKernels<3, 8>;
-template struct ContactKernels<3, 16>;
 
 }  // namespace cycloid::solver

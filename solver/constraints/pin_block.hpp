@@ -6,6 +6,7 @@
 
 #include "solver/constraints/block.hpp"
 #include "solver/constraints/motion_lanes.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/workers.hpp"
 
 namespace cycloid::solver {
@@ -152,6 +153,7 @@ struct PinBlocks {
 /// Those of a tick.
 template <int D>
 struct Pins {
+  static constexpr int kDimension = D;
   static constexpr std::int8_t kNone = -1;
 
   int lanes = 0;                        ///< The width that is used; 0 where there are no pins.
@@ -159,30 +161,15 @@ struct Pins {
   std::vector<PinCounts> counts;        ///< By colour.
   std::vector<int> lane_of;             ///< By place: the lane of all blocks in a row, or kNone.
   std::vector<std::uint32_t> place_of;  ///< By that lane; the solver's kNone where it is empty.
-  std::tuple<PinBlocks<D, 1>, PinBlocks<D, 4>, PinBlocks<D, 8>, PinBlocks<D, 16>,
-             PinBlocks<D, kAvx2Lanes>, PinBlocks<D, kAvx512Lanes>>
-      blocks;  ///< Only that of the width is filled.
+  ByWidth<PinBlocks, D> blocks;         ///< Only that of the width is filled.
 };
 
 /// Calls `act` with the blocks of the width that is used, if there are any.
 template <class AnyPins, class Act>
 void with_blocks(AnyPins& pins, Act&& act) {
-  switch (pins.lanes) {
-    case 1:
-      return act(std::get<0>(pins.blocks));
-    case 4:
-      return act(std::get<1>(pins.blocks));
-    case 8:
-      return act(std::get<2>(pins.blocks));
-    case 16:
-      return act(std::get<3>(pins.blocks));
-    case kAvx2Lanes:
-      return act(std::get<4>(pins.blocks));
-    case kAvx512Lanes:
-      return act(std::get<5>(pins.blocks));
-    default:
-      return;
-  }
+  if (pins.lanes == 0) return;
+  at_width(pins.lanes,
+           [&]<int W>() { act(std::get<PinBlocks<AnyPins::kDimension, W>>(pins.blocks)); });
 }
 
 /// The same, with blocks of some width, of which there are none, where there are no pins.

@@ -4,11 +4,7 @@ namespace cycloid::solver {
 
 template struct PinKernels<2, 1>;
 template struct PinKernels<2, 4>;
-template struct PinKernels<2, 8>;
-template struct PinKernels<2, 16>;
 template struct PinKernels<3, 1>;
 template struct PinKernels<3, 4>;
-template struct PinKernels<3, 8>;
-template struct PinKernels<3, 16>;
 
 }  // namespace cycloid::solver

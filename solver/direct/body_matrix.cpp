@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "solver/lane_widths.hpp"
+
 namespace cycloid::solver {
 
 template <int D>
@@ -213,10 +215,11 @@ template <int D>
 void BodyMatrix<D>::factor(Range steps) {
   const FactoredBlocks<D> of{steps_.data(),  entries_.data(), targets_.data(), diagonal_.data(),
                              beside_.data(), pivots_.data(),  column_.data()};
-  if (lanes_ == kAvx2Lanes || lanes_ == kAvx512Lanes)
-    BlockKernels<D, kAvx2Lanes>::factor(steps, of);
-  else
-    BlockKernels<D, 4>::factor(steps, of);
+  if constexpr (kHasAvxKernels) {
+    if (lanes_ == kAvx2Lanes || lanes_ == kAvx512Lanes)
+      return BlockKernels<D, kAvx2Lanes>::factor(steps, of);
+  }
+  BlockKernels<D, 4>::factor(steps, of);
 }
 
 template <int D>

@@ -32,19 +32,8 @@ void bounce_contacts(const StepContext<D>& context, const Lot& lot, Workers& wor
 
 template <int D, int W>
 struct InstantiateBounce {
-  static constexpr auto kBounce = &bounce_contacts<D, W>;
+  decltype(&bounce_contacts<D, W>) bounce = &bounce_contacts<D, W>;
 };
-template struct InstantiateBounce<2, 1>;
-template struct InstantiateBounce<2, 4>;
-template struct InstantiateBounce<2, 8>;
-template struct InstantiateBounce<2, 16>;
-template struct InstantiateBounce<2, kAvx2Lanes>;
-template struct InstantiateBounce<2, kAvx512Lanes>;
-template struct InstantiateBounce<3, 1>;
-template struct InstantiateBounce<3, 4>;
-template struct InstantiateBounce<3, 8>;
-template struct InstantiateBounce<3, 16>;
-template struct InstantiateBounce<3, kAvx2Lanes>;
-template struct InstantiateBounce<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateBounce>;
 
 }  // namespace cycloid::solver

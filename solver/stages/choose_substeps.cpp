@@ -67,20 +67,9 @@ StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D
 
 template <int D, int W>
 struct InstantiateSubsteps {
-  static constexpr auto kChoose = &choose_substeps<D, W>;
-  static constexpr auto kRescale = &rescale_impulses<D, W>;
+  decltype(&choose_substeps<D, W>) choose = &choose_substeps<D, W>;
+  decltype(&rescale_impulses<D, W>) rescale = &rescale_impulses<D, W>;
 };
-template struct InstantiateSubsteps<2, 1>;
-template struct InstantiateSubsteps<2, 4>;
-template struct InstantiateSubsteps<2, 8>;
-template struct InstantiateSubsteps<2, 16>;
-template struct InstantiateSubsteps<2, kAvx2Lanes>;
-template struct InstantiateSubsteps<2, kAvx512Lanes>;
-template struct InstantiateSubsteps<3, 1>;
-template struct InstantiateSubsteps<3, 4>;
-template struct InstantiateSubsteps<3, 8>;
-template struct InstantiateSubsteps<3, 16>;
-template struct InstantiateSubsteps<3, kAvx2Lanes>;
-template struct InstantiateSubsteps<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateSubsteps>;
 
 }  // namespace cycloid::solver

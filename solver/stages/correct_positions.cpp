@@ -26,19 +26,8 @@ void correct_positions(const StepContext<D>& context, const WorldState<D>& state
 
 template <int D, int W>
 struct InstantiateCorrect {
-  static constexpr auto kCorrect = &correct_positions<D, W>;
+  decltype(&correct_positions<D, W>) correct = &correct_positions<D, W>;
 };
-template struct InstantiateCorrect<2, 1>;
-template struct InstantiateCorrect<2, 4>;
-template struct InstantiateCorrect<2, 8>;
-template struct InstantiateCorrect<2, 16>;
-template struct InstantiateCorrect<2, kAvx2Lanes>;
-template struct InstantiateCorrect<2, kAvx512Lanes>;
-template struct InstantiateCorrect<3, 1>;
-template struct InstantiateCorrect<3, 4>;
-template struct InstantiateCorrect<3, 8>;
-template struct InstantiateCorrect<3, 16>;
-template struct InstantiateCorrect<3, kAvx2Lanes>;
-template struct InstantiateCorrect<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateCorrect>;
 
 }  // namespace cycloid::solver

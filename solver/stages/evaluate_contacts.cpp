@@ -41,19 +41,8 @@ void evaluate_contacts(Lot& lot, Workers& workers, StepScratch<D>& scratch) {
 
 template <int D, int W>
 struct InstantiateEvaluate {
-  static constexpr auto kEvaluate = &evaluate_contacts<D, W>;
+  decltype(&evaluate_contacts<D, W>) evaluate = &evaluate_contacts<D, W>;
 };
-template struct InstantiateEvaluate<2, 1>;
-template struct InstantiateEvaluate<2, 4>;
-template struct InstantiateEvaluate<2, 8>;
-template struct InstantiateEvaluate<2, 16>;
-template struct InstantiateEvaluate<2, kAvx2Lanes>;
-template struct InstantiateEvaluate<2, kAvx512Lanes>;
-template struct InstantiateEvaluate<3, 1>;
-template struct InstantiateEvaluate<3, 4>;
-template struct InstantiateEvaluate<3, 8>;
-template struct InstantiateEvaluate<3, 16>;
-template struct InstantiateEvaluate<3, kAvx2Lanes>;
-template struct InstantiateEvaluate<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateEvaluate>;
 
 }  // namespace cycloid::solver

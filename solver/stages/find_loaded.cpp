@@ -105,20 +105,9 @@ template LoadBounds load_bounds(const StepContext<3>&);
 
 template <int D, int W>
 struct InstantiateLoaded {
-  static constexpr auto kJoin = &join_loaded_lots<D, W>;
-  static constexpr auto kFind = &find_loaded<D, W>;
+  decltype(&join_loaded_lots<D, W>) join = &join_loaded_lots<D, W>;
+  decltype(&find_loaded<D, W>) find = &find_loaded<D, W>;
 };
-template struct InstantiateLoaded<2, 1>;
-template struct InstantiateLoaded<2, 4>;
-template struct InstantiateLoaded<2, 8>;
-template struct InstantiateLoaded<2, 16>;
-template struct InstantiateLoaded<2, kAvx2Lanes>;
-template struct InstantiateLoaded<2, kAvx512Lanes>;
-template struct InstantiateLoaded<3, 1>;
-template struct InstantiateLoaded<3, 4>;
-template struct InstantiateLoaded<3, 8>;
-template struct InstantiateLoaded<3, 16>;
-template struct InstantiateLoaded<3, kAvx2Lanes>;
-template struct InstantiateLoaded<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateLoaded>;
 
 }  // namespace cycloid::solver

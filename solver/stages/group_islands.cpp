@@ -251,19 +251,8 @@ void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<
 
 template <int D, int W>
 struct InstantiateGroups {
-  static constexpr auto kGroup = &group_islands<D, W>;
+  decltype(&group_islands<D, W>) group = &group_islands<D, W>;
 };
-template struct InstantiateGroups<2, 1>;
-template struct InstantiateGroups<2, 4>;
-template struct InstantiateGroups<2, 8>;
-template struct InstantiateGroups<2, 16>;
-template struct InstantiateGroups<2, kAvx2Lanes>;
-template struct InstantiateGroups<2, kAvx512Lanes>;
-template struct InstantiateGroups<3, 1>;
-template struct InstantiateGroups<3, 4>;
-template struct InstantiateGroups<3, 8>;
-template struct InstantiateGroups<3, 16>;
-template struct InstantiateGroups<3, kAvx2Lanes>;
-template struct InstantiateGroups<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateGroups>;
 
 }  // namespace cycloid::solver

@@ -105,20 +105,9 @@ void scatter_island(StepScratch<D>& scratch, const typename IslandSolver<D>::Isl
 
 template <int D, int W>
 struct InstantiateIslandRows {
-  static constexpr auto kGather = &gather_island<D, W>;
-  static constexpr auto kScatter = &scatter_island<D, W>;
+  decltype(&gather_island<D, W>) gather = &gather_island<D, W>;
+  decltype(&scatter_island<D, W>) scatter = &scatter_island<D, W>;
 };
-template struct InstantiateIslandRows<2, 1>;
-template struct InstantiateIslandRows<2, 4>;
-template struct InstantiateIslandRows<2, 8>;
-template struct InstantiateIslandRows<2, 16>;
-template struct InstantiateIslandRows<2, kAvx2Lanes>;
-template struct InstantiateIslandRows<2, kAvx512Lanes>;
-template struct InstantiateIslandRows<3, 1>;
-template struct InstantiateIslandRows<3, 4>;
-template struct InstantiateIslandRows<3, 8>;
-template struct InstantiateIslandRows<3, 16>;
-template struct InstantiateIslandRows<3, kAvx2Lanes>;
-template struct InstantiateIslandRows<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateIslandRows>;
 
 }  // namespace cycloid::solver

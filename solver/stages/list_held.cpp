@@ -123,19 +123,8 @@ bool list_held(Workers& workers, StepScratch<D>& scratch) {
 
 template <int D, int W>
 struct InstantiateHeld {
-  static constexpr auto kList = &list_held<D, W>;
+  decltype(&list_held<D, W>) list = &list_held<D, W>;
 };
-template struct InstantiateHeld<2, 1>;
-template struct InstantiateHeld<2, 4>;
-template struct InstantiateHeld<2, 8>;
-template struct InstantiateHeld<2, 16>;
-template struct InstantiateHeld<2, kAvx2Lanes>;
-template struct InstantiateHeld<2, kAvx512Lanes>;
-template struct InstantiateHeld<3, 1>;
-template struct InstantiateHeld<3, 4>;
-template struct InstantiateHeld<3, 8>;
-template struct InstantiateHeld<3, 16>;
-template struct InstantiateHeld<3, kAvx2Lanes>;
-template struct InstantiateHeld<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateHeld>;
 
 }  // namespace cycloid::solver

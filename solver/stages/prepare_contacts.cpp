@@ -184,21 +184,10 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
 
 template <int D, int W>
 struct InstantiatePrepare {
-  static constexpr auto kLayOut = &lay_out_contacts<D, W>;
-  static constexpr auto kSeat = &seat_lot<D, W>;
-  static constexpr auto kPrepare = &prepare_contacts<D, W>;
+  decltype(&lay_out_contacts<D, W>) lay_out = &lay_out_contacts<D, W>;
+  decltype(&seat_lot<D, W>) seat = &seat_lot<D, W>;
+  decltype(&prepare_contacts<D, W>) prepare = &prepare_contacts<D, W>;
 };
-template struct InstantiatePrepare<2, 1>;
-template struct InstantiatePrepare<2, 4>;
-template struct InstantiatePrepare<2, 8>;
-template struct InstantiatePrepare<2, 16>;
-template struct InstantiatePrepare<2, kAvx2Lanes>;
-template struct InstantiatePrepare<2, kAvx512Lanes>;
-template struct InstantiatePrepare<3, 1>;
-template struct InstantiatePrepare<3, 4>;
-template struct InstantiatePrepare<3, 8>;
-template struct InstantiatePrepare<3, 16>;
-template struct InstantiatePrepare<3, kAvx2Lanes>;
-template struct InstantiatePrepare<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiatePrepare>;
 
 }  // namespace cycloid::solver

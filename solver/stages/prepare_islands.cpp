@@ -100,19 +100,8 @@ void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratc
 
 template <int D, int W>
 struct InstantiatePlans {
-  static constexpr auto kPrepare = &prepare_islands<D, W>;
+  decltype(&prepare_islands<D, W>) prepare = &prepare_islands<D, W>;
 };
-template struct InstantiatePlans<2, 1>;
-template struct InstantiatePlans<2, 4>;
-template struct InstantiatePlans<2, 8>;
-template struct InstantiatePlans<2, 16>;
-template struct InstantiatePlans<2, kAvx2Lanes>;
-template struct InstantiatePlans<2, kAvx512Lanes>;
-template struct InstantiatePlans<3, 1>;
-template struct InstantiatePlans<3, 4>;
-template struct InstantiatePlans<3, 8>;
-template struct InstantiatePlans<3, 16>;
-template struct InstantiatePlans<3, kAvx2Lanes>;
-template struct InstantiatePlans<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiatePlans>;
 
 }  // namespace cycloid::solver

@@ -73,19 +73,8 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
 
 template <int D, int W>
 struct InstantiateProject {
-  static constexpr auto kProject = &project_positions<D, W>;
+  decltype(&project_positions<D, W>) project = &project_positions<D, W>;
 };
-template struct InstantiateProject<2, 1>;
-template struct InstantiateProject<2, 4>;
-template struct InstantiateProject<2, 8>;
-template struct InstantiateProject<2, 16>;
-template struct InstantiateProject<2, kAvx2Lanes>;
-template struct InstantiateProject<2, kAvx512Lanes>;
-template struct InstantiateProject<3, 1>;
-template struct InstantiateProject<3, 4>;
-template struct InstantiateProject<3, 8>;
-template struct InstantiateProject<3, 16>;
-template struct InstantiateProject<3, kAvx2Lanes>;
-template struct InstantiateProject<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateProject>;
 
 }  // namespace cycloid::solver

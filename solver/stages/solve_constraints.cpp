@@ -91,22 +91,11 @@ void store_impulses(const Lot& lot, Workers& workers, StepScratch<D>& scratch) {
 }
 
 template <int D, int W>
-struct Instantiate {
-  static constexpr auto kWarmStart = &warm_start_constraints<D, W>;
-  static constexpr auto kSolve = &solve_constraints<D, W>;
-  static constexpr auto kStore = &store_impulses<D, W>;
+struct InstantiateSolving {
+  decltype(&warm_start_constraints<D, W>) warm_start = &warm_start_constraints<D, W>;
+  decltype(&solve_constraints<D, W>) solve = &solve_constraints<D, W>;
+  decltype(&store_impulses<D, W>) store = &store_impulses<D, W>;
 };
-template struct Instantiate<2, 1>;
-template struct Instantiate<2, 4>;
-template struct Instantiate<2, 8>;
-template struct Instantiate<2, 16>;
-template struct Instantiate<2, kAvx2Lanes>;
-template struct Instantiate<2, kAvx512Lanes>;
-template struct Instantiate<3, 1>;
-template struct Instantiate<3, 4>;
-template struct Instantiate<3, 8>;
-template struct Instantiate<3, 16>;
-template struct Instantiate<3, kAvx2Lanes>;
-template struct Instantiate<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateSolving>;
 
 }  // namespace cycloid::solver

@@ -156,19 +156,8 @@ template void correct_islands(const StepContext<3>&, StepScratch<3>&);
 
 template <int D, int W>
 struct InstantiateIslands {
-  static constexpr auto kSolve = &solve_islands<D, W>;
+  decltype(&solve_islands<D, W>) solve = &solve_islands<D, W>;
 };
-template struct InstantiateIslands<2, 1>;
-template struct InstantiateIslands<2, 4>;
-template struct InstantiateIslands<2, 8>;
-template struct InstantiateIslands<2, 16>;
-template struct InstantiateIslands<2, kAvx2Lanes>;
-template struct InstantiateIslands<2, kAvx512Lanes>;
-template struct InstantiateIslands<3, 1>;
-template struct InstantiateIslands<3, 4>;
-template struct InstantiateIslands<3, 8>;
-template struct InstantiateIslands<3, 16>;
-template struct InstantiateIslands<3, kAvx2Lanes>;
-template struct InstantiateIslands<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateIslands>;
 
 }  // namespace cycloid::solver

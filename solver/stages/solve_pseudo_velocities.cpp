@@ -54,19 +54,8 @@ void solve_pseudo_velocities(const StepContext<D>& context, const Lot& lot, Work
 
 template <int D, int W>
 struct InstantiatePseudo {
-  static constexpr auto kSolve = &solve_pseudo_velocities<D, W>;
+  decltype(&solve_pseudo_velocities<D, W>) solve = &solve_pseudo_velocities<D, W>;
 };
-template struct InstantiatePseudo<2, 1>;
-template struct InstantiatePseudo<2, 4>;
-template struct InstantiatePseudo<2, 8>;
-template struct InstantiatePseudo<2, 16>;
-template struct InstantiatePseudo<2, kAvx2Lanes>;
-template struct InstantiatePseudo<2, kAvx512Lanes>;
-template struct InstantiatePseudo<3, 1>;
-template struct InstantiatePseudo<3, 4>;
-template struct InstantiatePseudo<3, 8>;
-template struct InstantiatePseudo<3, 16>;
-template struct InstantiatePseudo<3, kAvx2Lanes>;
-template struct InstantiatePseudo<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiatePseudo>;
 
 }  // namespace cycloid::solver

@@ -204,19 +204,8 @@ void weigh_guesses(const StepContext<D>& context, const Lot& lot, Workers& worke
 
 template <int D, int W>
 struct InstantiateWeighing {
-  static constexpr auto kWeigh = &weigh_guesses<D, W>;
+  decltype(&weigh_guesses<D, W>) weigh = &weigh_guesses<D, W>;
 };
-template struct InstantiateWeighing<2, 1>;
-template struct InstantiateWeighing<2, 4>;
-template struct InstantiateWeighing<2, 8>;
-template struct InstantiateWeighing<2, 16>;
-template struct InstantiateWeighing<2, kAvx2Lanes>;
-template struct InstantiateWeighing<2, kAvx512Lanes>;
-template struct InstantiateWeighing<3, 1>;
-template struct InstantiateWeighing<3, 4>;
-template struct InstantiateWeighing<3, 8>;
-template struct InstantiateWeighing<3, 16>;
-template struct InstantiateWeighing<3, kAvx2Lanes>;
-template struct InstantiateWeighing<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateWeighing>;
 
 }  // namespace cycloid::solver

@@ -1,6 +1,6 @@
 #include "solver/tracing/digest_kernels.hpp"
 
-#include "solver/instruction_sets.hpp"
+#include "solver/lane_widths.hpp"
 #include "solver/tracing/digest_lanes.hpp"
 
 namespace cycloid::solver {
@@ -9,15 +9,12 @@ template struct DigestKernels<4>;
 extern template struct DigestKernels<kAvx2Lanes>;
 extern template struct DigestKernels<kAvx512Lanes>;
 
+template <int W>
+static constexpr DigestFunctions kFunctionsOf{&DigestKernels<W>::update,
+                                              &DigestKernels<W>::canonical_bytes};
+
 const DigestFunctions& digest_functions() {
-  static constexpr DigestFunctions kFour{&DigestKernels<4>::update,
-                                         &DigestKernels<4>::canonical_bytes};
-  static constexpr DigestFunctions kEight{&DigestKernels<kAvx2Lanes>::update,
-                                          &DigestKernels<kAvx2Lanes>::canonical_bytes};
-  static constexpr DigestFunctions kSixteen{&DigestKernels<kAvx512Lanes>::update,
-                                            &DigestKernels<kAvx512Lanes>::canonical_bytes};
-  if (has_avx512_kernels()) return kSixteen;
-  return has_avx2_kernels() ? kEight : kFour;
+  return at_widest([]<int W>() -> const DigestFunctions& { return kFunctionsOf<W>; });
 }
 
 }  // namespace cycloid::solver

@@ -65,19 +65,8 @@ void read_blocks(const StepScratch<D>& scratch, std::vector<ContactWork<D>>& con
 
 template <int D, int W>
 struct InstantiateRead {
-  static constexpr auto kRead = &read_blocks<D, W>;
+  decltype(&read_blocks<D, W>) read = &read_blocks<D, W>;
 };
-template struct InstantiateRead<2, 1>;
-template struct InstantiateRead<2, 4>;
-template struct InstantiateRead<2, 8>;
-template struct InstantiateRead<2, 16>;
-template struct InstantiateRead<2, kAvx2Lanes>;
-template struct InstantiateRead<2, kAvx512Lanes>;
-template struct InstantiateRead<3, 1>;
-template struct InstantiateRead<3, 4>;
-template struct InstantiateRead<3, 8>;
-template struct InstantiateRead<3, 16>;
-template struct InstantiateRead<3, kAvx2Lanes>;
-template struct InstantiateRead<3, kAvx512Lanes>;
+template struct AtEveryWidth<InstantiateRead>;
 
 }  // namespace cycloid::solver

@@ -1,7 +1,6 @@
 #pragma once
 
-#include "solver/instruction_sets.hpp"
-#include "solver/lanes.hpp"
+#include "solver/lane_widths.hpp"
 
 namespace cycloid::solver {
 
@@ -10,8 +9,10 @@ namespace cycloid::solver {
 template <int... kWidths, class Act>
 void for_each_width(Act&& act) {
   (act.template operator()<kWidths>(), ...);
-  if (has_avx2_kernels()) act.template operator()<kAvx2Lanes>();
-  if (has_avx512_kernels()) act.template operator()<kAvx512Lanes>();
+  if constexpr (kHasAvxKernels) {
+    if (has_avx2_kernels()) act.template operator()<kAvx2Lanes>();
+    if (has_avx512_kernels()) act.template operator()<kAvx512Lanes>();
+  }
 }
 
 }  // namespace cycloid::solver

@@ -119,7 +119,7 @@ static void expect_same_bits(const Manifold<2>& expected, const Manifold<2>& fou
 }
 
 static std::vector<int> widths() {
-  std::vector<int> widths = {1, 4, 8, 16};
+  std::vector<int> widths = {1, 4};
   if (has_avx2_kernels()) widths.push_back(kAvx2Lanes);
   if (has_avx512_kernels()) widths.push_back(kAvx512Lanes);
   return widths;

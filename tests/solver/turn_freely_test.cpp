@@ -99,7 +99,7 @@ static void expect_to_turn_as_each_by_itself() {
 }
 
 TEST(TurnFreely, LanesTurnToTheBitAsEachByItself) {
-  for_each_width<1, 4, 8, 16>([]<int W>() { expect_to_turn_as_each_by_itself<W>(); });
+  for_each_width<1, 4>([]<int W>() { expect_to_turn_as_each_by_itself<W>(); });
 }
 
 }  // namespace cycloid::solver
