@@ -176,8 +176,7 @@ void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into) {
 
 /// Brings the largest moment to between 1/2 and 1 without rounding, so that a determinant, its
 /// third power, neither underflows nor overflows.
-template <int D>
-static float scale_to_one(const Inertia<D>& inertia) {
+static float scale_to_one(const Inertia<3>& inertia) {
   float largest = 0.0f;
   for (const float moment : inertia.m) largest = max(largest, abs(moment));
   if (!(largest >= 1.0e-30f && largest <= 1.0e30f)) return 1.0f;
@@ -187,14 +186,11 @@ static float scale_to_one(const Inertia<D>& inertia) {
   return scale;
 }
 
-template <int D>
-Inertia<D> inverse(const Inertia<D>& inertia) {
-  constexpr int kSpin = Dim<D>::kSpin;
-  using Matrix = Eigen::Matrix<float, kSpin, kSpin>;
+Inertia<3> inverse(const Inertia<3>& inertia) {
   const float scale = scale_to_one(inertia);
-  const Matrix matrix = scale * Eigen::Map<const Matrix>(inertia.m);
-  Inertia<D> result{};
-  if (matrix.determinant() > 0.0f) Eigen::Map<Matrix>(result.m) = scale * matrix.inverse();
+  const Eigen::Matrix3f matrix = scale * Eigen::Map<const Eigen::Matrix3f>(inertia.m);
+  Inertia<3> result{};
+  if (matrix.determinant() > 0.0f) Eigen::Map<Eigen::Matrix3f>(result.m) = scale * matrix.inverse();
   return result;
 }
 
@@ -204,7 +200,5 @@ template void add_mass(const Shape<2>&, float, MassProperties<2>&);
 template void add_mass(const Shape<3>&, float, MassProperties<3>&);
 template Inertia<2> central_inertia(const MassProperties<2>&);
 template Inertia<3> central_inertia(const MassProperties<3>&);
-template Inertia<2> inverse(const Inertia<2>&);
-template Inertia<3> inverse(const Inertia<3>&);
 
 }  // namespace cycloid::solver

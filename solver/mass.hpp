@@ -32,7 +32,9 @@ template <int D>
 Inertia<D> central_inertia(const MassProperties<D>& properties);
 
 /// The inverse, or zero where there is none. Moments from 1e-30 to 1e30 kg m^2 have one.
-template <int D>
-Inertia<D> inverse(const Inertia<D>& inertia);
+inline Inertia<2> inverse(const Inertia<2>& inertia) {
+  return {{inertia.m[0] > 0.0f ? 1.0f / inertia.m[0] : 0.0f}};
+}
+Inertia<3> inverse(const Inertia<3>& inertia);
 
 }  // namespace cycloid::solver

@@ -138,7 +138,7 @@ static Wide share_of_guess(std::size_t island, StepScratch<D>& scratch) {
     const Motion<D>& guess = solver.guess[slot];
     const BodyMass<D>& mass = scratch.masses[slot];
     const Vec<D> linear = (1.0f / mass.inverse_mass) * guess.velocity;
-    const Spin<D> angular = inverse<D>(mass.inverse_inertia) * guess.spin;
+    const Spin<D> angular = inverse(mass.inverse_inertia) * guess.spin;
     work += work_on<D>(scratch.motions[slot], linear, angular);
     energy += work_on<D>(guess, linear, angular);
   }

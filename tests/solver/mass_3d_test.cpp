@@ -241,4 +241,10 @@ TEST(InverseInertia, IsTheSameAtEveryPowerOfTwo) {
   }
 }
 
+TEST(InverseInertia, OfThePlaneIsOneOverItOrNothing) {
+  for (const float moment : {1.0e-30f, 0.3f, 7.0f, 1.0e30f})
+    EXPECT_EQ(inverse(Inertia<2>{{moment}}).m[0], 1.0f / moment);
+  EXPECT_EQ(inverse(Inertia<2>{}).m[0], 0.0f);
+}
+
 }  // namespace cycloid::solver
