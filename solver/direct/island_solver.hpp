@@ -169,7 +169,7 @@ class IslandSolver {
   BodyMatrix<D> matrix;
   std::vector<std::uint32_t> held_words;   ///< What `held` was made of.
   std::vector<HeldPair> held;              ///< Contacts in the order of the colouring, then joints.
-  std::vector<int> held_in;                ///< By held pair with groups, its island; else -1.
+  std::vector<int> held_in;                ///< By held pair, its island; -1: neither moves.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.
   std::vector<std::pair<int, int>> pairs_before;
   int contact_pairs = 0;    ///< The first ones of those; joints follow.
@@ -197,10 +197,9 @@ class IslandSolver {
   bool only_thin = false;             ///< What was planned holds for thin islands alone.
   IslandWork work;
 
-  /// The island of a pair; -1 where neither of the two moves.
-  int island_at(const HeldPair& pair) const { return island_of[pair.a_moves ? pair.a : pair.b]; }
-  bool is_numbered(const HeldPair& pair) const {
-    const int at = island_at(pair);
+  /// Whether the pair at this place in `held` is of an island that has nodes.
+  bool is_numbered(std::size_t place) const {
+    const int at = held_in[place];
     return at >= 0 && islands[static_cast<std::size_t>(at)].numbered;
   }
 

@@ -49,10 +49,14 @@ static void find_islands(StepScratch<D>& scratch) {
   }
 }
 
+/// Says of which island each pair is.
 template <int D>
 static void count_pairs(IslandSolver<D>& solver) {
-  for (const HeldPair& pair : solver.held) {
-    const int at = solver.island_at(pair);
+  solver.held_in.resize(solver.held.size());
+  for (std::size_t i = 0; i < solver.held.size(); ++i) {
+    const HeldPair& pair = solver.held[i];
+    const int at = solver.island_of[pair.a_moves ? pair.a : pair.b];
+    solver.held_in[i] = at;
     if (at < 0) continue;
     auto& island = solver.islands[static_cast<std::size_t>(at)];
     ++island.pairs;
@@ -130,8 +134,9 @@ static bool list_pairs(IslandSolver<D>& solver) {
   std::swap(solver.pairs, solver.pairs_before);
   solver.pairs.clear();
   const int contacts_before = std::exchange(solver.contact_pairs, 0);
-  for (const HeldPair& pair : solver.held) {
-    if (!solver.is_numbered(pair)) continue;
+  for (std::size_t i = 0; i < solver.held.size(); ++i) {
+    if (!solver.is_numbered(i)) continue;
+    const HeldPair& pair = solver.held[i];
     const int a = solver.node_of[pair.a];
     const int b = solver.node_of[pair.b];
     solver.pairs.push_back({a, b});

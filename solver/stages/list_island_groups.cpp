@@ -12,15 +12,12 @@ static bool is_listed(const typename IslandSolver<D>::Island& island, const Held
 /// Where the groups of each island begin; counts of groups and joints become ranges.
 template <int D>
 static void place_groups(IslandSolver<D>& solver) {
-  solver.held_in.clear();
   for (auto& island : solver.islands) island.groups = island.joints = {0, 0};
-  for (const HeldPair& pair : solver.held) {
-    const int at = solver.island_at(pair);
-    solver.held_in.push_back(-1);
-    if (at < 0) continue;
-    auto& island = solver.islands[static_cast<std::size_t>(at)];
+  for (std::size_t i = 0; i < solver.held.size(); ++i) {
+    if (solver.held_in[i] < 0) continue;
+    const HeldPair& pair = solver.held[i];
+    auto& island = solver.islands[static_cast<std::size_t>(solver.held_in[i])];
     if (!is_listed<D>(island, pair)) continue;
-    solver.held_in.back() = at;
     island.groups.end += pair.points;
     if (pair.lane < 0) ++island.joints.end;
   }
@@ -74,10 +71,11 @@ void list_groups(StepScratch<D>& scratch) {
   place_groups(solver);
   std::size_t next_pair = 0;
   for (std::size_t i = 0; i < solver.held.size(); ++i) {
-    const HeldPair& pair = solver.held[i];
-    const int beside = solver.is_numbered(pair) ? solver.beside[next_pair++] : -1;
     if (solver.held_in[i] < 0) continue;
+    const HeldPair& pair = solver.held[i];
     auto& island = solver.islands[static_cast<std::size_t>(solver.held_in[i])];
+    const int beside = island.numbered ? solver.beside[next_pair++] : -1;
+    if (!is_listed<D>(island, pair)) continue;
     list_points(pair, beside, static_cast<std::size_t>(island.groups.end), solver);
     island.groups.end += pair.points;
   }
@@ -120,7 +118,7 @@ void sort_by_island(std::size_t slots, IslandSolver<D>& solver) {
       solver.slots_of);
   sort_numbers(
       solver.held.size(), solver.islands.size(),
-      [&](std::size_t place) { return solver.island_at(solver.held[place]); }, solver.held_of);
+      [&](std::size_t place) { return solver.held_in[place]; }, solver.held_of);
   solver.is_sorted = true;
 }
 

@@ -126,11 +126,19 @@ static Wide work_on_massless(const HeldPair& pair, StepScratch<D>& scratch) {
   return work;
 }
 
+/// Whether any body is such ground.
+template <int D>
+static bool any_massless_moves(const StepScratch<D>& scratch) {
+  for (std::size_t slot = 0; slot < scratch.masses.size(); ++slot)
+    if (scratch.masses[slot].inverse_mass == 0.0f && is_moving(scratch.motions[slot])) return true;
+  return false;
+}
+
 /// How much of an island's guess is worth having, from 0 to 1: with so much of it the energy is
 /// least. E(s) = 1/2 (v + (s - 1) dv)^T M (v + (s - 1) dv) with v after the warm start and dv what
 /// it added, v relative to what the guess pushes against; so s = 1 - p . v / p . dv, p = M dv.
 template <int D, int W>
-static Wide share_of_guess(std::size_t island, StepScratch<D>& scratch) {
+static Wide share_of_guess(std::size_t island, bool ground_moves, StepScratch<D>& scratch) {
   const IslandSolver<D>& solver = scratch.islands_solved;
   Wide work = 0.0;
   Wide energy = 0.0;
@@ -142,6 +150,7 @@ static Wide share_of_guess(std::size_t island, StepScratch<D>& scratch) {
     work += work_on<D>(scratch.motions[slot], linear, angular);
     energy += work_on<D>(guess, linear, angular);
   }
+  if (!ground_moves) return share_worth_having(work, energy);
   for (const std::uint32_t place : solver.held_of.of(island))
     work += work_on_massless<D, W>(solver.held[place], scratch);
   return share_worth_having(work, energy);
@@ -190,14 +199,16 @@ void weigh_guesses(const StepContext<D>& context, const Lot& lot, Workers& worke
                    StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   bool is_found = false;
+  bool ground_moves = false;
   for (std::size_t i = 0; i < solver.islands.size(); ++i) {
     if (!is_wild(context, scratch, solver.islands[i])) continue;
     if (!is_found) {
       sort_by_island(scratch.masses.size(), solver);
       find_guess<D, W>(lot, workers, scratch);
+      ground_moves = any_massless_moves(scratch);
     }
     is_found = true;
-    const Wide share = share_of_guess<D, W>(i, scratch);
+    const Wide share = share_of_guess<D, W>(i, ground_moves, scratch);
     if (share < 1.0) keep_share<D, W>(static_cast<float>(share), i, scratch);
   }
 }

@@ -40,6 +40,7 @@ struct BodyBetweenRows {
     row.rows.rows[0].linear_b = {{-1.0f, 0.0f}};
     row.impulse[0] = impulse;
     scratch.islands_solved.held.push_back({0, to, place, -1, 1, true, false});
+    scratch.islands_solved.held_in.push_back(0);
     scratch.islands_solved.sources.push_back({place, -1, 0});
     scratch.pins.lane_of.push_back(Pins<2>::kNone);
   }
@@ -76,6 +77,7 @@ struct BodyBetweenRows {
     contacts.colors = {{0, 1}};
     lot.colors = {0, 1};
     scratch.islands_solved.held.push_back({2, 0, 0, 0, 1, false, true});
+    scratch.islands_solved.held_in.push_back(0);
   }
   float contact_impulse() const {
     return std::get<ContactBlocks<2, 1>>(scratch.contact_blocks)
