@@ -1,4 +1,4 @@
-// Compiled with -mavx2 where CYCLOID_AVX2 is defined; called only where has_avx2_kernels() says so.
+// Compiled with -mavx2 for CYCLOID_AVX_KERNELS; called only where has_avx2_kernels() says so.
 // Every name that this file defines holds the width 264: see contact_kernels_avx2.cpp.
 #include "solver/constraints/pin_sweeps.hpp"
 
