@@ -11,6 +11,16 @@ namespace cycloid::solver {
 struct MovingPair {
   std::uint32_t a;
   std::uint32_t b;
+
+  bool operator==(const MovingPair&) const = default;
+};
+
+/// A joint of which a body is awake.
+struct LiveJoint {
+  int slot;
+  MovingPair bodies;
+
+  bool operator==(const LiveJoint&) const = default;
 };
 
 /// Constraints by colour: no two of one colour share a body that moves. `order` lists colour after

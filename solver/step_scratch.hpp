@@ -179,7 +179,8 @@ struct StepScratch : ContactList<D> {
   std::vector<std::uint8_t> inertia_turned;  ///< By body: its mass is of this substep's rotation.
   std::vector<std::uint32_t> used_colors;    ///< Bit set by body slot.
   Colors colors;                             ///< Of live joints; then of live contacts.
-  std::vector<int> live_joints;
+  std::vector<LiveJoint> live_joints;
+  bool colored_joints = false;           ///< joint_coloring is of these, by colour.
   Coloring joint_coloring;               ///< `order` holds joint slots.
   Coloring contact_coloring;             ///< `order` holds places of live contacts.
   std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.

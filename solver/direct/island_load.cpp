@@ -52,7 +52,8 @@ void IslandSolver<D>::keep_load(const Island& island, std::span<const Motion<D>>
     Vector after = change[node];
     for (int i = 0; i < D; ++i) after[i] += static_cast<Wide>(motion.velocity[i]);
     for (int i = 0; i < Dim<D>::kSpin; ++i) after[D + i] += static_cast<Wide>(motion.spin[i]);
-    for (int i = 0; i < kFreedoms; ++i) momentum_[node][i] = before[node][i] - kAhead * after[i];
+    for (int i = 0; i < kFreedoms; ++i)
+      momentum_[node][i] = static_cast<Wide>(before[node].numbers[i]) - kAhead * after[i];
   }
   set_zero(island, solution_);
   for (const IslandRows<D>& group : contacts_of(island)) {

@@ -63,6 +63,12 @@ struct IslandTension {
   Vec<D> along;     ///< Unit; in the plane the only axis is across it.
 };
 
+/// Velocity and spin of a node, and what stands behind them in its motion.
+template <int D>
+struct alignas(16) VelocityQuads {
+  float numbers[4 * kVelocityQuads<D>];
+};
+
 /// What a solve has to know of the step.
 struct IslandStep {
   Wide h;               ///< Of the substep, s.
@@ -186,7 +192,7 @@ class IslandSolver {
   std::vector<int> island_of;              ///< By slot; -1: nothing holds it.
   std::vector<Vector> change;              ///< By node: of the velocity, m/s and rad/s.
   std::vector<Vector> correction;          ///< By node: speed for positions alone.
-  std::vector<Vector> before;              ///< By node: velocity that the substep began with.
+  std::vector<VelocityQuads<D>> before;    ///< By node: that the substep began with.
   ByIsland slots_of;                       ///< By island, if is_sorted.
   ByIsland held_of;                        ///< Places in `held`, the same.
   bool is_sorted = false;                  ///< Since islands were last found.

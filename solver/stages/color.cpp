@@ -1,14 +1,36 @@
 #include <algorithm>
 #include <bit>
 #include <iterator>
+#include <utility>
 
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
 
 /// Places in the list of live constraints become their slots.
-static void name_slots(const std::vector<int>& live, Coloring& coloring) {
-  for (int& index : coloring.order) index = live[static_cast<std::size_t>(index)];
+static void name_slots(const std::vector<LiveJoint>& live, Coloring& coloring) {
+  for (int& index : coloring.order) index = live[static_cast<std::size_t>(index)].slot;
+}
+
+/// Lists the joints of which a body is awake, in slot order. @returns whether it is the list that
+/// stood there before: whoever has made something of that can keep it.
+template <int D, class PairOf>
+static bool list_live_joints(const WorldState<D>& state, const std::vector<std::uint8_t>& awake,
+                             PairOf&& pair_of, std::vector<LiveJoint>& live) {
+  const std::size_t room = live.size();
+  std::size_t count = 0;
+  bool same = true;
+  for (int i = 0; i < static_cast<int>(state.joints.size()); ++i) {
+    const Joint<D>& joint = state.joints[static_cast<std::size_t>(i)];
+    if (joint.kind == JointKind::kFree) continue;
+    if (awake[joint.body_a] == 0 && awake[joint.body_b] == 0) continue;
+    const LiveJoint found{i, pair_of(joint.body_a, joint.body_b)};
+    if (count == live.size()) live.push_back(found);
+    same = same && live[count] == found;
+    live[count++] = found;
+  }
+  live.resize(count);
+  return same && count == room;
 }
 
 /// Every constraint in one line, solved one after the other.
@@ -76,39 +98,34 @@ void sort_by_color(const Colors& colors, Coloring& coloring) {
 /// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes;
 /// or, where the tuning asks for an order, one line of each.
 ///
-/// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints, and
-/// the colour of each contact. Serial, because each choice depends on those before; a function of
-/// ids alone, so not of workers or history.
+/// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints,
+/// which is as it was where they are, and the colour of each contact. Serial, because each choice
+/// depends on those before; a function of ids alone, so not of workers or history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   const std::vector<std::uint8_t>& has_mass = scratch.kept->active_bodies.has_mass;
   const auto pair_of = [&](std::uint32_t a, std::uint32_t b) {
     return MovingPair{has_mass[a] != 0 ? a : kNone, has_mass[b] != 0 ? b : kNone};
   };
-  std::vector<int>& joints = scratch.live_joints;
-  joints.clear();
-  for (int i = 0; i < static_cast<int>(state.joints.size()); ++i) {
-    const Joint<D>& joint = state.joints[static_cast<std::size_t>(i)];
-    if (joint.kind == JointKind::kFree) continue;
-    if (scratch.awake[joint.body_a] != 0 || scratch.awake[joint.body_b] != 0) joints.push_back(i);
-  }
+  std::vector<LiveJoint>& joints = scratch.live_joints;
+  const bool same_joints = list_live_joints(state, scratch.awake, pair_of, joints);
   const Order order = state.header.tuning.order;
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;
     list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
     name_slots(joints, scratch.joint_coloring);
+    scratch.colored_joints = false;
     list_in_order(static_cast<int>(scratch.live.size()), reverse, scratch.contact_coloring);
     std::fill(std::begin(scratch.colors.sizes), std::end(scratch.colors.sizes), 0);
     return;
   }
   scratch.used_colors.resize(state.bodies.size());
-  const auto pair_of_joint = [&](std::size_t i) {
-    const Joint<D>& joint = state.joints[static_cast<std::size_t>(joints[i])];
-    return pair_of(joint.body_a, joint.body_b);
-  };
-  assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.colors);
-  sort_by_color(scratch.colors, scratch.joint_coloring);
-  name_slots(joints, scratch.joint_coloring);
+  if (!same_joints || !std::exchange(scratch.colored_joints, true)) {
+    const auto pair_of_joint = [&](std::size_t i) { return joints[i].bodies; };
+    assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.colors);
+    sort_by_color(scratch.colors, scratch.joint_coloring);
+    name_slots(joints, scratch.joint_coloring);
+  }
   scratch.colors.pairs.resize(scratch.live.size());
   const auto pair_of_contact = [&](std::size_t i) {
     return scratch.colors.pairs[i] = pair_of(scratch.live[i].body_a, scratch.live[i].body_b);

@@ -1,3 +1,5 @@
+#include <limits>
+
 #include "solver/stages/island_rows.hpp"
 
 namespace cycloid::solver {
@@ -84,15 +86,19 @@ void list_groups(StepScratch<D>& scratch) {
 
 template <int D>
 void find_heaviest(const StepScratch<D>& scratch, typename IslandSolver<D>::Island& island) {
-  island.mass = island.inertia = 0.0f;
+  constexpr float kNoBody = std::numeric_limits<float>::infinity();
+  float least_mass = kNoBody;
+  float least_inertia = kNoBody;
   for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
     const std::uint32_t slot = scratch.islands_solved.body_of[static_cast<std::size_t>(n)];
     const BodyMass<D>& mass = scratch.masses[slot];
-    island.mass = max(island.mass, 1.0f / mass.inverse_mass);
+    least_mass = min(least_mass, mass.inverse_mass);
     for (int i = 0; i < Dim<D>::kSpin; ++i)
       if (const float inverse = mass.inverse_inertia.m[i * (Dim<D>::kSpin + 1)]; inverse > 0.0f)
-        island.inertia = max(island.inertia, 1.0f / inverse);
+        least_inertia = min(least_inertia, inverse);
   }
+  island.mass = 1.0f / least_mass;
+  island.inertia = 1.0f / least_inertia;
 }
 
 /// Sorts the numbers [0, count) by island_at(number); those of no island, -1, are left out.

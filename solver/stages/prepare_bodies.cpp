@@ -46,8 +46,8 @@ static void list_met(const WorldState<D>& state, StepScratch<D>& scratch) {
     met.push_back(live.body_a);
     met.push_back(live.body_b);
   }
-  for (const int slot : scratch.live_joints) {
-    const Joint<D>& joint = state.joints[static_cast<std::size_t>(slot)];
+  for (const LiveJoint& live : scratch.live_joints) {
+    const Joint<D>& joint = state.joints[static_cast<std::size_t>(live.slot)];
     met.push_back(joint.body_a);
     met.push_back(joint.body_b);
   }

@@ -23,34 +23,6 @@ static bool is_swept(const ContactBlock<D, W>& block, int lane) {
           (block.extra->rolling.raw[lane] > 0.0f || block.extra->twist.raw[lane] > 0.0f));
 }
 
-/// Finds the islands that sweeps act on in any case, and the lanes of no island.
-template <int D, int W>
-static void find_swept(StepScratch<D>& scratch) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const auto sweep = [&](std::uint32_t slot) {
-    if (solver.island_of[slot] >= 0)
-      solver.islands[static_cast<std::size_t>(solver.island_of[slot])].swept = true;
-  };
-  for (const JointRow<D>& row : scratch.joint_rows) {
-    if (!is_swept(row)) continue;
-    sweep(row.body_a);
-    sweep(row.body_b);
-  }
-  for (std::size_t i = 0; i < solver.held.size(); ++i) {
-    const HeldPair& pair = solver.held[i];
-    if (pair.lane < 0) break;
-    auto& block = blocks[static_cast<std::size_t>(pair.place)];
-    const int at = solver.held_in[i];
-    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken) {
-      block.left |= LaneBits{1} << pair.lane;
-      continue;
-    }
-    block.taken |= LaneBits{1} << pair.lane;
-    if (is_swept(block, pair.lane)) solver.islands[static_cast<std::size_t>(at)].swept = true;
-  }
-}
-
 /// The gap of a contact that counts as none. What bounces has to come all the way.
 template <int D, int W>
 static void set_touch(float touch, int lane, std::size_t place, ContactBlocks<D, W>& contacts) {
@@ -60,23 +32,45 @@ static void set_touch(float touch, int lane, std::size_t place, ContactBlocks<D,
   block.touches = true;
 }
 
-/// Takes what islands hold from the soft sweeps.
+/// Finds the islands whose joints sweeps act on in any case.
+template <int D>
+static void find_swept_joints(StepScratch<D>& scratch) {
+  IslandSolver<D>& solver = scratch.islands_solved;
+  const auto sweep = [&](std::uint32_t slot) {
+    if (solver.island_of[slot] >= 0)
+      solver.islands[static_cast<std::size_t>(solver.island_of[slot])].swept = true;
+  };
+  for (const JointRow<D>& row : scratch.joint_rows) {
+    if (!is_swept(row)) continue;
+    sweep(row.body_a);
+    sweep(row.body_b);
+  }
+}
+
+/// Takes what islands hold from the soft sweeps, and says which of their contacts sweeps act on all
+/// the same, and which lanes are of no island.
 template <int D, int W>
-static void take_rows(const StepContext<D>& context, StepScratch<D>& scratch) {
+static void take_held(const StepContext<D>& context, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const float touch = kTouchOfSlop * context.tuning.slop;
   for (std::size_t i = 0; i < solver.held.size(); ++i) {
-    const int at = solver.held_in[i];
-    if (at < 0 || !solver.islands[static_cast<std::size_t>(at)].taken) continue;
     const HeldPair& pair = solver.held[i];
     const auto place = static_cast<std::size_t>(pair.place);
-    if (pair.lane >= 0) {
-      set_touch(touch, pair.lane, place, contacts);
+    const int at = solver.held_in[i];
+    auto* island = at < 0 ? nullptr : &solver.islands[static_cast<std::size_t>(at)];
+    const bool is_taken = island != nullptr && island->taken;
+    if (pair.lane < 0) {
+      if (is_taken) scratch.joint_rows[place].in_island = true;
+      if (is_taken) scratch.joint_rows[place].solved_directly = true;
       continue;
     }
-    scratch.joint_rows[place].in_island = true;
-    scratch.joint_rows[place].solved_directly = true;
+    ContactBlock<D, W>& block = contacts.blocks[place];
+    const LaneBits bit = LaneBits{1} << pair.lane;
+    (is_taken ? block.taken : block.left) |= bit;
+    if (!is_taken) continue;
+    if (is_swept(block, pair.lane)) island->swept = true;
+    set_touch(touch, pair.lane, place, contacts);
   }
 }
 
@@ -94,8 +88,8 @@ void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratc
   solver.matrix.use_lanes(widest_lanes(context.lanes));
   group_islands<D, W>(context, workers, scratch);
   if (!solver.acts) return;
-  find_swept<D, W>(scratch);
-  take_rows<D, W>(context, scratch);
+  find_swept_joints(scratch);
+  take_held<D, W>(context, scratch);
 }
 
 template <int D, int W>

@@ -115,19 +115,24 @@ void solve_islands(const StepContext<D>& context, const Lot& lot, Workers& worke
     PinKernels<D, P>::look_for_rest(context, kJointBounds, pin_range<D, P>(scratch, range));
   });
   weigh_guesses<D, W>(context, lot, workers, scratch);
+  bool any_stirred = false;
   for (auto& island : solver.islands) {
     if (!island.taken) continue;
     island.corrects = island.closes = false;
     island.stirred = is_restless<D, W>(context, scratch, all, island);
+    any_stirred = any_stirred || island.stirred;
+  }
+  for (auto& island : solver.islands) {
+    if (!island.taken) continue;
     if (island.stirred) {
       solve_island<D, W>(context, scratch, island);
       continue;
     }
     ++solver.work.rests;
-    hand_over<D, W>(island, false, true, scratch);
+    hand_over<D, W>(island, false, any_stirred, scratch);
   }
   for (ContactBlock<D, W>& block : contacts.blocks)
-    if ((block.settled & block.taken) == 0) block.settled = 0;
+    if (!any_stirred || (block.settled & block.taken) == 0) block.settled = 0;
 }
 
 /// Moves out of overlap what was solved at once, and leaves its velocities alone.

@@ -1,5 +1,4 @@
-#include <algorithm>
-
+#include "solver/constraints/single_lanes.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -14,19 +13,23 @@ static constexpr Wide kSways = 5.0e-4;
 /// Takes down with which velocities the bodies of an island begin. @returns the greatest along any
 /// axis, m/s or rad/s.
 template <int D>
-static Wide note_velocities(const typename IslandSolver<D>::Island& island,
-                            StepScratch<D>& scratch) {
+static float note_velocities(const typename IslandSolver<D>::Island& island,
+                             StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  Wide most = 0.0;
+  Lanes<4> most[kVelocityQuads<D>];
+  for (Lanes<4>& of_quad : most) of_quad = 0.0f;
   for (int n = island.nodes.begin; n < island.nodes.end; ++n) {
     const auto node = static_cast<std::size_t>(n);
     const Motion<D>& motion = scratch.motions[solver.body_of[node]];
-    auto& before = solver.before[node];
-    for (int i = 0; i < D; ++i) before[i] = static_cast<Wide>(motion.velocity[i]);
-    for (int i = 0; i < Dim<D>::kSpin; ++i) before[D + i] = static_cast<Wide>(motion.spin[i]);
-    for (int i = 0; i < Dim<D>::kFreedoms; ++i) most = std::max(most, magnitude(before[i]));
+    for (int quad = 0; quad < kVelocityQuads<D>; ++quad) {
+      const Lanes<4> numbers(load_quad(motion, quad));
+      numbers.store(solver.before[node].numbers + 4 * quad);
+      most[quad] = max(most[quad], max(numbers, -numbers));
+    }
   }
-  return most;
+  float greatest = 0.0f;  // Behind the velocity there is more of the motion.
+  for (int i = 0; i < Dim<D>::kFreedoms; ++i) greatest = max(greatest, lane_of(most[i / 4], i % 4));
+  return greatest;
 }
 
 /// Sees which islands are calm before forces act on them: for these a solve leaves a guess of their
@@ -42,7 +45,7 @@ void watch_islands(StepScratch<D>& scratch) {
   for (auto& island : solver.islands) {
     island.calm = island.sways = false;
     if (!island.taken || island.joint_count > 0) continue;
-    const Wide fastest = note_velocities(island, scratch);
+    const auto fastest = static_cast<Wide>(note_velocities(island, scratch));
     island.calm = fastest < kCalm;
     island.sways = island.calm && fastest > kSways;
   }

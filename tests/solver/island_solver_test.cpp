@@ -57,7 +57,7 @@ TEST(IslandSolver, StopsABodyThatFallsOnTwoPoints) {
 struct BodyThatSettles : BodyOnGround {
   explicit BodyThatSettles(bool calm) {
     island.calm = calm;
-    solver.before[0][1] = -0.004;
+    solver.before[0].numbers[1] = -0.004f;
     motions[0].velocity[1] = -0.044f;
     for (const std::size_t normal : {0, 2}) solver.rows[normal].missing = -0.044;
   }
