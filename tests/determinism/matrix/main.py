@@ -55,7 +55,7 @@ def _chosen(arguments: argparse.Namespace, matrix: rows.Matrix,
               and (not arguments.quick or row.quick)]
     if not chosen:
         parser.error("no row is in all of --row, --group and --quick; see --list")
-    return chosen
+    return [row.as_quick() for row in chosen] if arguments.quick else chosen
 
 
 def _say(text: str) -> None:

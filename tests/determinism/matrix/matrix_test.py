@@ -28,6 +28,7 @@ scenes = ["hill"]
 ticks = 2
 [checks]
 full = [{ticks = 100}, {ticks = 10, workers = 2, lanes = 1}]
+short = [{ticks = 10}]
 [[row]]
 name = "good"
 group = "right"
@@ -161,6 +162,15 @@ class MatrixTest(unittest.TestCase):
         self.assertEqual(code, 1)
         self.assertIn("10 ticks, 2 workers, 1 lanes: valley", said)
 
+    def test_a_quick_run_compares_what_the_row_says_of_it(self) -> None:
+        other = 'environment = {FAKE = "OTHER"}\n'
+        quick = ROWS.replace(other, other + 'quick = true\nquick_checks = "short"\n')
+        with mock.patch.object(sys.modules[__name__], "ROWS", quick):
+            for words, digests in ((["--quick"], 2 * 10), (["--row", "other"], 2 * 100 + 2 * 10)):
+                code, said = self.matrix(*words)
+                self.assertEqual(code, 0, said)
+                self.assertEqual(self.record("other")["digests"], digests)
+
     def test_a_program_that_compares_too_little_fails(self) -> None:
         for fake, reason in (("lazy", "not every tick was compared of hill, valley"),
                              ("silent", "100 ticks, 1 workers, 4 lanes:")):
@@ -256,6 +266,7 @@ class MatrixTest(unittest.TestCase):
     def test_rows_with_unknown_or_missing_fields_are_refused(self) -> None:
         for text, reason in ((ROWS + 'colour = "red"\n', "there is no field 'colour'"),
                              (ROWS.replace('target = "nowhere"\n', ""), "'target' is missing"),
+                             (ROWS + 'quick_checks = "nix"\n', "quick_checks: there are none"),
                              (ROWS.replace('name = "other"', 'name = "good"'), "is there 2 times")):
             with mock.patch.object(sys.modules[__name__], "ROWS", text):
                 code, said = self.matrix("--list")

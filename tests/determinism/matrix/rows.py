@@ -48,7 +48,12 @@ class Row:
     cpu: tuple[str, ...] = ()  # What the processor must have, as /proc/cpuinfo calls it.
     objdump: str = ""  # Disassembles for the target; none: the objects are not read.
     quick: bool = False
+    quick_checks: tuple[Check, ...] = ()  # What --quick compares, where it is not all of `checks`.
     timeout_s: int = 3600  # Of a single run of the program.
+
+    def as_quick(self) -> "Row":
+        """The row as --quick runs it."""
+        return dataclasses.replace(self, checks=self.quick_checks or self.checks)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -80,11 +85,14 @@ def _fields_of(kind: type, table: dict[str, Any], where: str) -> dict[str, Any]:
 
 def _row(table: dict[str, Any], checks: dict[str, tuple[Check, ...]]) -> Row:
     where = f"row '{table.get('name', '?')}'"
-    named = table.get("checks", "")
-    if named not in checks:
-        raise MatrixError(f"{where}: checks: there are none called '{named}'")
+    asked = {}
+    for field in ("checks", "quick_checks"):
+        named = table.get(field, "")
+        if named not in checks and (named or field == "checks"):
+            raise MatrixError(f"{where}: {field}: there are none called '{named}'")
+        asked[field] = checks.get(named, ())
     environment = tuple(table.get("environment", {}).items())
-    table = table | {"checks": checks[named], "environment": environment}
+    table = table | asked | {"environment": environment}
     return Row(**_fields_of(Row, table, where))
 
 
