@@ -15,10 +15,13 @@ struct MovingPair {
   bool operator==(const MovingPair&) const = default;
 };
 
-/// A joint of which a body is awake.
+/// A joint of which a body is awake, and all that decides what it holds.
 struct LiveJoint {
   int slot;
   MovingPair bodies;
+  bool a_is_awake;
+  bool b_is_awake;
+  bool is_rigid;  ///< Its equalities do not yield.
 
   bool operator==(const LiveJoint&) const = default;
 };

@@ -75,6 +75,29 @@ struct JointRow : ConeLimit<D> {
   HeldRow<D> motor;
 };
 
+/// Which blocks of a joint's equalities are springs.
+struct Springs {
+  bool first = false;
+  bool second = false;
+
+  bool operator==(const Springs&) const = default;
+};
+template <int D>
+Springs springs_of(const Joint<D>& joint) {
+  switch (joint.kind) {
+    case JointKind::kMotor:
+    case JointKind::kTarget:
+      return {true, true};
+    case JointKind::kWeld:
+      return {joint.hertz > 0.0f, joint.angular_hertz > 0.0f};
+    case JointKind::kConeTwist:
+      // Friction in a ball joint is a spring without stiffness: it damps all that it may.
+      return {false, joint.angular_hertz > 0.0f || joint.torque_max > 0.0f};
+    default:
+      return {};
+  }
+}
+
 /// Whether its equalities do not yield, so that an island can hold them.
 template <int D>
 bool is_held(const JointRow<D>& row) {

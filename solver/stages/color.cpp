@@ -3,6 +3,7 @@
 #include <iterator>
 #include <utility>
 
+#include "solver/constraints/joint_row.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -24,7 +25,8 @@ static bool list_live_joints(const WorldState<D>& state, const std::vector<std::
     const Joint<D>& joint = state.joints[static_cast<std::size_t>(i)];
     if (joint.kind == JointKind::kFree) continue;
     if (awake[joint.body_a] == 0 && awake[joint.body_b] == 0) continue;
-    const LiveJoint found{i, pair_of(joint.body_a, joint.body_b)};
+    const LiveJoint found{i, pair_of(joint.body_a, joint.body_b), awake[joint.body_a] != 0,
+                          awake[joint.body_b] != 0, springs_of(joint) == Springs{}};
     if (count == live.size()) live.push_back(found);
     same = same && live[count] == found;
     live[count++] = found;
@@ -99,7 +101,8 @@ void sort_by_color(const Colors& colors, Coloring& coloring) {
 /// or, where the tuning asks for an order, one line of each.
 ///
 /// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints,
-/// which is as it was where they are, and the colour of each contact. Serial, because each choice
+/// which is as it was where they are, for list_held whether they are, and the colour of each
+/// contact. Serial, because each choice
 /// depends on those before; a function of ids alone, so not of workers or history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
@@ -109,6 +112,7 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   };
   std::vector<LiveJoint>& joints = scratch.live_joints;
   const bool same_joints = list_live_joints(state, scratch.awake, pair_of, joints);
+  if (!same_joints) scratch.islands_solved.joints_as_listed = false;
   const Order order = state.header.tuning.order;
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;
@@ -120,7 +124,8 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
     return;
   }
   scratch.used_colors.resize(state.bodies.size());
-  if (!same_joints || !std::exchange(scratch.colored_joints, true)) {
+  const bool were_colored = std::exchange(scratch.colored_joints, true);
+  if (!same_joints || !were_colored) {
     const auto pair_of_joint = [&](std::size_t i) { return joints[i].bodies; };
     assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.colors);
     sort_by_color(scratch.colors, scratch.joint_coloring);

@@ -1,5 +1,6 @@
 #include <cstring>
 #include <type_traits>
+#include <utility>
 
 #include "solver/stages/island_rows.hpp"
 #include "solver/stages/stages.hpp"
@@ -14,14 +15,6 @@ struct HeldBlock {
   LaneBits moves_a;
   LaneBits moves_b;
   LaneBits has_point[Dim<D>::kManifoldPoints];
-};
-
-/// All that the pair of a joint's row says.
-struct HeldJoint {
-  std::uint32_t body_a;
-  std::uint32_t body_b;
-  std::uint32_t is_held;
-  std::uint32_t moves;
 };
 
 /// Takes a record down. @returns whether it is the one that stood there before.
@@ -49,25 +42,15 @@ static bool moves(const StepScratch<D>& scratch, std::uint32_t slot) {
   return scratch.masses[slot].inverse_mass > 0.0f;
 }
 
-template <int D>
-static HeldJoint held_by(const StepScratch<D>& scratch, const JointRow<D>& row) {
-  const std::uint32_t a_moves = moves(scratch, row.body_a) ? 1 : 0;
-  const std::uint32_t b_moves = moves(scratch, row.body_b) ? 2 : 0;
-  return {row.body_a, row.body_b, is_held(row) ? 1u : 0u, a_moves | b_moves};
-}
-
-/// Takes down all that pairs are made of: three numbers that say how, what blocks hold, what
-/// joints hold. @returns whether all is as it was.
+/// Takes down all that pairs are made of: three numbers that say how, and what blocks hold; of the
+/// joints `color` tells. @returns whether all is as it was.
 template <int D, int W>
 static bool is_held_as_before(Workers& workers, StepScratch<D>& scratch) {
   constexpr std::size_t kOfBlock = sizeof(HeldBlock<D, W>) / 4;
-  constexpr std::size_t kOfJoint = sizeof(HeldJoint) / 4;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
-  const std::vector<JointRow<D>>& rows = scratch.joint_rows;
   std::vector<std::uint32_t>& words = scratch.islands_solved.held_words;
   constexpr std::size_t kBlocksAt = 3;
-  const std::size_t joints_at = kBlocksAt + kOfBlock * blocks.size();
-  const std::size_t count = joints_at + kOfJoint * rows.size();
+  const std::size_t count = kBlocksAt + kOfBlock * blocks.size();
   Tally changes;
   if (words.size() != count) changes.add(1);
   words.resize(count);
@@ -75,21 +58,15 @@ static bool is_held_as_before(Workers& workers, StepScratch<D>& scratch) {
                                         static_cast<std::uint32_t>(scratch.masses.size()),
                                         static_cast<std::uint32_t>(blocks.size())};
   if (!put(how, words.data())) changes.add(1);
-  const auto put_all = [&](int size, auto&& put_one) {
-    workers.parallel_for(size, kBodyGrain, [&](Range range) {
-      bool same = true;
-      for (int i = range.begin; i < range.end; ++i)
-        same = put_one(static_cast<std::size_t>(i)) && same;
-      if (!same) changes.add(1);
-    });
-  };
-  put_all(static_cast<int>(blocks.size()), [&](std::size_t i) {
-    return put(held_by(blocks[i]), words.data() + kBlocksAt + kOfBlock * i);
+  workers.parallel_for(static_cast<int>(blocks.size()), kBodyGrain, [&](Range range) {
+    bool same = true;
+    for (int i = range.begin; i < range.end; ++i) {
+      const auto block = static_cast<std::size_t>(i);
+      same = put(held_by(blocks[block]), words.data() + kBlocksAt + kOfBlock * block) && same;
+    }
+    if (!same) changes.add(1);
   });
-  put_all(static_cast<int>(rows.size()), [&](std::size_t i) {
-    return put(held_by(scratch, rows[i]), words.data() + joints_at + kOfJoint * i);
-  });
-  return changes.sum() == 0;
+  return std::exchange(scratch.islands_solved.joints_as_listed, true) && changes.sum() == 0;
 }
 
 template <int D, int W>

@@ -10,12 +10,11 @@ static constexpr float kUnbounded = 1.0e18f;
 template <int D>
 static void set_blocks(const StepContext<D>& context, const Joint<D>& joint, JointRow<D>& row) {
   const bool yields = joint.kind == JointKind::kMotor || joint.kind == JointKind::kTarget;
-  const bool weld = joint.kind == JointKind::kWeld;
-  row.is_spring[0] = yields || (weld && joint.hertz > 0.0f);
-  // Friction in a ball joint is a spring without stiffness: it damps all that it may.
+  const Springs are_springs = springs_of(joint);
+  row.is_spring[0] = are_springs.first;
+  row.is_spring[1] = are_springs.second;
   const bool springs = joint.kind == JointKind::kConeTwist && joint.angular_hertz > 0.0f;
   const bool rubs = joint.kind == JointKind::kConeTwist && !springs && joint.torque_max > 0.0f;
-  row.is_spring[1] = yields || springs || rubs || (weld && joint.angular_hertz > 0.0f);
   row.spring_of[0] = joint.hertz > 0.0f
                          ? spring_softness(joint.hertz, joint.damping_ratio, context.h)
                          : context.motor;
