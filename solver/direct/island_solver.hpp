@@ -174,7 +174,7 @@ class IslandSolver {
 
   BodyMatrix<D> matrix;
   std::vector<std::uint32_t> held_words;   ///< What `held` was made of, but for the joints.
-  bool joints_as_listed = false;           ///< They are as they were when `held` was made.
+  bool joints_as_listed = false;           ///< They, and their places, are as when `held` was made.
   std::vector<HeldPair> held;              ///< Contacts in the order of the colouring, then joints.
   std::vector<int> held_in;                ///< By held pair, its island; -1: neither moves.
   std::vector<std::pair<int, int>> pairs;  ///< Nodes that hold each other; -1 does not move.

@@ -101,9 +101,9 @@ void sort_by_color(const Colors& colors, Coloring& coloring) {
 /// or, where the tuning asks for an order, one line of each.
 ///
 /// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints,
-/// which is as it was where they are, for list_held whether they are, and the colour of each
-/// contact. Serial, because each choice
-/// depends on those before; a function of ids alone, so not of workers or history.
+/// which is as it was where they are, for list_held whether it is, and the colour of each contact.
+/// Serial, because each choice depends on those before; a function of ids alone, so not of workers
+/// or history.
 template <int D>
 void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   const std::vector<std::uint8_t>& has_mass = scratch.kept->active_bodies.has_mass;
@@ -112,20 +112,20 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   };
   std::vector<LiveJoint>& joints = scratch.live_joints;
   const bool same_joints = list_live_joints(state, scratch.awake, pair_of, joints);
-  if (!same_joints) scratch.islands_solved.joints_as_listed = false;
   const Order order = state.header.tuning.order;
+  const bool were_colored = std::exchange(scratch.colored_joints, order == Order::kColor);
+  const bool keeps_joints = same_joints && were_colored && order == Order::kColor;
+  if (!keeps_joints) scratch.islands_solved.joints_as_listed = false;
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;
     list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
     name_slots(joints, scratch.joint_coloring);
-    scratch.colored_joints = false;
     list_in_order(static_cast<int>(scratch.live.size()), reverse, scratch.contact_coloring);
     std::fill(std::begin(scratch.colors.sizes), std::end(scratch.colors.sizes), 0);
     return;
   }
   scratch.used_colors.resize(state.bodies.size());
-  const bool were_colored = std::exchange(scratch.colored_joints, true);
-  if (!same_joints || !were_colored) {
+  if (!keeps_joints) {
     const auto pair_of_joint = [&](std::size_t i) { return joints[i].bodies; };
     assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.colors);
     sort_by_color(scratch.colors, scratch.joint_coloring);

@@ -61,8 +61,8 @@ static void take_held(const StepContext<D>& context, StepScratch<D>& scratch) {
     auto* island = at < 0 ? nullptr : &solver.islands[static_cast<std::size_t>(at)];
     const bool is_taken = island != nullptr && island->taken;
     if (pair.lane < 0) {
-      if (is_taken) scratch.joint_rows[place].in_island = true;
-      if (is_taken) scratch.joint_rows[place].solved_directly = true;
+      JointRow<D>& row = scratch.joint_rows[place];
+      if (is_taken) row.in_island = row.solved_directly = true;
       continue;
     }
     ContactBlock<D, W>& block = contacts.blocks[place];
