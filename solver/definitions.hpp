@@ -251,7 +251,7 @@ enum class ContactBlockRows : std::uint32_t {
   /// The same where it is needed and costs little: of thin islands (stacks, chains, bridges,
   /// arches) whose load would let a soft contact or joint give way. Elsewhere, and where the method
   /// is not kSoft or joints are kDirect, it is kNone. A tick in which such islands have all that
-  /// moves takes half the substeps (stages/choose_substeps.cpp).
+  /// moves takes fewer substeps (stages/choose_substeps.cpp).
   kLoadedIsland,
 };
 

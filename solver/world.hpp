@@ -109,7 +109,7 @@ class World {
   void set_lot_contacts(std::uint32_t contacts) { lot_contacts_ = contacts; }
 
   /// Advances one tick: `tuning.substeps` substeps of tick_s / substeps; under kLoadedIsland half
-  /// as many where islands are solved at once that have all that moves.
+  /// or a quarter as many where islands are solved at once that have all that moves.
   ///
   /// Forces and torques apply for this tick and are cleared. When a value would leave the finite,
   /// bounded range, nothing is committed: the world keeps the state of the tick before, enters the

@@ -200,7 +200,7 @@ class IslandSolver {
   std::vector<Motion<D>> guess;       ///< By slot: what the warm start has added (weigh_guesses).
   std::vector<std::uint32_t> loaded;  ///< Slots of bodies whose load calls for this solver.
   bool acts = false;                  ///< In this tick, on some island.
-  bool has_all = false;               ///< All that moves, in substeps of twice the length.
+  bool has_all = false;               ///< All that moves, in fewer and longer substeps.
   bool only_thin = false;             ///< What was planned holds for thin islands alone.
   IslandWork work;
 

@@ -66,6 +66,51 @@ static void set_cone(float share, const Joint<3>& joint, JointRow<3>& row) {
   row.cone_impulse = row.limit_enabled ? share * joint.cone_impulse : 0.0f;
 }
 
+/// How far apart the points of a joint may be when a tick begins for it to be left to sweeps, or to
+/// fewer substeps, m. Both close it late, when the next blow has come: a chain that begins at twice
+/// its length then never quite comes together. From 0.02 to 0.1 is all the same.
+static constexpr float kParted = 0.08f;
+
+/// Of a user's joint whose first rows hold a point, what they say; else 0, m. @pre its function is
+/// registered.
+template <int D>
+static Vec<D> apart_by_rows(const StepContext<D>& context, const WorldState<D>& state,
+                            const JointRow<D>& row) {
+  const Body<D>& a = state.bodies[row.body_a];
+  const Body<D>& b = state.bodies[row.body_b];
+  const auto tick = static_cast<std::int64_t>(state.header.tick);
+  JointRows<D> rows{};
+  row.rows_function(make_frame(state, state.joints[row.joint], a.position, row.centre_offset,
+                               a.rotation, b.rotation, static_cast<float>(tick) * context.tick_s),
+                    rows);
+  Vec<D> apart = Vec<D>::zero();
+  for (int i = 0; i < D && rows.split >= D; ++i)
+    apart[i] = rows.rows[static_cast<std::size_t>(i)].error;
+  return apart;
+}
+
+/// From where a joint holds a point of one body to that point of the other, m; 0 of a joint that
+/// holds none.
+template <int D>
+static Vec<D> points_apart(const StepContext<D>& context, const WorldState<D>& state,
+                           const JointRow<D>& row) {
+  const Joint<D>& joint = state.joints[row.joint];
+  switch (joint.kind) {
+    case JointKind::kRevolute:
+    case JointKind::kWeld:
+    case JointKind::kHinge:
+    case JointKind::kConeTwist:
+      return row.centre_offset + (rotate(state.bodies[row.body_b].rotation, joint.anchor_b) -
+                                  rotate(state.bodies[row.body_a].rotation, joint.anchor_a));
+    case JointKind::kUser:
+      if (row.rows_function != nullptr) return apart_by_rows(context, state, row);
+      break;
+    default:
+      break;
+  }
+  return Vec<D>::zero();
+}
+
 /// @param row  May be of another joint and tick: everything is written but what evaluate_rows
 /// writes, which is a good part of it.
 template <int D>
@@ -85,6 +130,8 @@ static void set_row(const StepContext<D>& context, const WorldState<D>& state,
   set_axis(context, joint, row);
   take_impulses(context.tuning.warm_starting, joint, row);
   set_cone(context.tuning.warm_starting, joint, row);
+  const Vec<D> apart = points_apart(context, state, row);
+  row.parted = dot(apart, apart) > kParted * kParted;
   row.in_island = row.solved_directly = row.relaxes = row.limit_near = false;
   row.rows.drop();
 }

@@ -20,10 +20,13 @@ static Tuning with_rows(Tuning tuning, ContactBlockRows rows) {
 }
 
 /// A load on two boxes, a stack, blows on pyramids, joints with contacts in loops, motors that jam,
-/// and a box in space.
+/// a box in space, and joints alone, held from the start or apart.
 static constexpr const char* kTrialsOfLoads[] = {
-    "trial-heavy-on-light-1000", "trial-stack-30",         "trial-heavy-apexes", "trial-bridge",
-    "trial-ragdoll-stress",      "trial-duplicate-points", "trial-joint-grid-30"};
+    "trial-heavy-on-light-1000", "trial-stack-30",
+    "trial-heavy-apexes",        "trial-bridge",
+    "trial-ragdoll-stress",      "trial-duplicate-points",
+    "trial-joint-grid-30",       "trial-ball-and-chain",
+    "trial-stretched-chain"};
 
 TEST(LoadedIslands, WorkersAndLanesAreInvisible) {
   for (const char* name : kTrialsOfLoads)
@@ -95,7 +98,8 @@ TEST(LoadedIslands, HoldWhatSoftSweepsLetFall) {
   };
   constexpr Claim kClaims[] = {{"trial-heavy-on-light-1000", 0.005}, {"trial-stack-30", 0.02},
                                {"trial-400-on-thin-ground", 0.01},   {"trial-arch", 0.05},
-                               {"trial-ball-and-chain", 0.005},      {"trial-bridge", 0.005}};
+                               {"trial-ball-and-chain", 0.005},      {"trial-bridge", 0.005},
+                               {"trial-stretched-chain", 0.002}};
   for (const Claim& claim : kClaims) {
     const Outcome held = judge(trial_named(claim.trial), Tuning::soft_loaded());
     EXPECT_TRUE(held.ended) << claim.trial;
@@ -113,6 +117,11 @@ TEST(LoadedIslands, ChainsOfUnequalMassesAreHeldFromTheFirstTick) {
     EXPECT_TRUE(course.ended) << name;
     EXPECT_LT(*std::max_element(course.gaps_m.begin(), course.gaps_m.end()), 0.0005) << name;
   }
+}
+
+// Its joints carry nothing yet when it begins, at twice its length.
+TEST(LoadedIslands, WhatHasPartedIsSolvedFromTheFirstTick) {
+  EXPECT_FALSE(moves_alike("trial-stretched-chain", Tuning::soft_loaded(), Tuning::soft_step(), 1));
 }
 
 // At rest an island may miss 0.4 mm/s in each contact, and a stack of thirty that

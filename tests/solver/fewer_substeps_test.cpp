@@ -1,4 +1,4 @@
-#include "tests/solver/world_fixture.hpp"
+#include "tests/solver/joint_scene.hpp"
 
 namespace cycloid::solver {
 
@@ -19,15 +19,14 @@ struct Asked {
   float damping = 0.0f;  ///< 1/s.
 };
 
+static Tuning without_sleep(Tuning tuning) {
+  tuning.sleep_s = 0.0f;
+  return tuning;
+}
+
+/// On a ground that it adds.
 template <int D>
-static Column<D> make_column(const Asked& asked) {
-  Material material;
-  material.friction = 0.0f;
-  material.restitution = asked.restitution;
-  WorldDef<D> def = with_gravity<D>(material);
-  def.tuning = asked.tuning;
-  def.tuning.sleep_s = 0.0f;
-  World<D> world = make_world<D>(def);
+static std::pair<BodyId, BodyId> add_column(World<D>& world, const Asked& asked) {
   add_ground<D>(world, up<D>());
   BodyDef<D> body;
   body.mass = 1.0f;
@@ -39,6 +38,18 @@ static Column<D> make_column(const Asked& asked) {
   body.position[1] = 1.5f;
   body.spin[Dim<D>::kSpin - 1] = asked.spin;
   const BodyId heavy = add(world, body, ball<D>(0.5f));
+  return {light, heavy};
+}
+
+template <int D>
+static Column<D> make_column(const Asked& asked) {
+  Material material;
+  material.friction = 0.0f;
+  material.restitution = asked.restitution;
+  WorldDef<D> def = with_gravity<D>(material);
+  def.tuning = without_sleep(asked.tuning);
+  World<D> world = make_world<D>(def);
+  const auto [light, heavy] = add_column(world, asked);
   return {std::move(world), light, heavy};
 }
 
@@ -68,6 +79,63 @@ TEST(FewerSubsteps, NotWhereItWouldNotBeHalfOrTooFew) {
     EXPECT_EQ(substeps_after<2>(30, {Tuning{}.in_substeps(asked)}), asked);
 }
 
+/// A ball of 1 kg that hangs by a joint, and from it by another, at its own centre, one of 1000 kg:
+/// joints between unequal masses, so it is a loaded island, and it is all that moves.
+template <int D>
+struct Pendulum : Scene<D> {
+  static constexpr float kHeight = 6.0f;  ///< Of the heavy one.
+  BodyId heavy;
+
+  explicit Pendulum(const Asked& asked) : Scene<D>(without_sleep(asked.tuning)) {
+    const BodyId light = this->add_ball(at<D>(20.0f, 8.0f), 1.0f);
+    heavy = this->add_ball(at<D>(20.0f, kHeight), 1000.0f);
+    JointDef<D> joint = this->joint(JointKind::kRevolute, this->anchor, light);
+    joint.anchor_a = at<D>(20.0f, 8.0f);
+    this->create(joint);
+    joint = this->joint(JointKind::kRevolute, light, heavy);
+    joint.anchor_a = at<D>(0.0f, -2.0f);
+    this->create(joint);
+    turn(asked.spin);
+  }
+  /// The heavy one, from rest.
+  void turn(float spin) {
+    Spin<D> about = Spin<D>::zero();
+    about[Dim<D>::kSpin - 1] = spin;
+    ASSERT_TRUE(this->world.set_velocity(heavy, Vec<D>::zero(), about).ok());
+  }
+  std::uint32_t substeps() const { return this->world.statistics().substeps; }
+};
+
+template <int D>
+static std::uint32_t substeps_of_pendulum(const Asked& asked) {
+  Pendulum<D> pendulum(asked);
+  step(pendulum.world, 30);
+  return pendulum.substeps();
+}
+
+TEST(FewerSubsteps, AQuarterWhereJointsHoldAllThatMoves) {
+  EXPECT_EQ(substeps_of_pendulum<2>({}), 1u);
+  EXPECT_EQ(substeps_of_pendulum<3>({}), 1u);
+  EXPECT_EQ(substeps_of_pendulum<2>({Tuning{}.in_substeps(6)}), 3u);
+  EXPECT_EQ(substeps_of_pendulum<2>({Tuning{}.in_substeps(8)}), 2u);
+}
+
+// 0.025 rad in a substep of 1/60 s, then in one of 1/120.
+TEST(FewerSubsteps, AQuarterOnlyWhileNothingTurnsFast) {
+  for (const auto& [spin, substeps] : std::vector<std::pair<float, std::uint32_t>>{
+           {1.4f, 1u}, {1.6f, 2u}, {2.9f, 2u}, {3.1f, 4u}}) {
+    EXPECT_EQ(substeps_of_pendulum<2>({{}, 0.0f, 0.0f, spin}), substeps) << spin;
+    EXPECT_EQ(substeps_of_pendulum<3>({{}, 0.0f, 0.0f, spin}), substeps) << spin;
+  }
+}
+
+TEST(FewerSubsteps, HalfWhereAnIslandHasNoJoints) {
+  Pendulum<2> pendulum({});
+  add_column<2>(pendulum.world, {});
+  step(pendulum.world, 30);
+  EXPECT_EQ(pendulum.substeps(), 2u);
+}
+
 TEST(FewerSubsteps, UnderNoOtherMethod) {
   EXPECT_EQ(substeps_after<2>(30, {Tuning::soft_step()}), 4u);
   Tuning islands;
@@ -89,6 +157,20 @@ TEST(FewerSubsteps, NotWhileSomethingTurnsFast) {
   EXPECT_EQ(substeps_after<2>(30, {{}, 0.0f, 0.0f, 3.1f}), 4u);
   EXPECT_EQ(substeps_after<3>(30, {{}, 0.0f, 0.0f, 2.9f}), 2u);
   EXPECT_EQ(substeps_after<3>(30, {{}, 0.0f, 0.0f, 3.1f}), 4u);
+}
+
+// A joint by 8 cm.
+TEST(FewerSubsteps, NotWhereAJointHasParted) {
+  for (const auto& [apart, substeps] :
+       std::vector<std::pair<float, std::uint32_t>>{{0.07f, 1u}, {0.09f, 4u}}) {
+    Pendulum<2> pendulum({});
+    step(pendulum.world, 30);
+    const BodyView<2> heavy = view(pendulum.world, pendulum.heavy);
+    const Vec<2> lower = heavy.position - at<2>(0.0f, apart);
+    ASSERT_TRUE(pendulum.world.set_pose(pendulum.heavy, lower, heavy.rotation).ok());
+    step(pendulum.world, 1);
+    EXPECT_EQ(pendulum.substeps(), substeps) << apart;
+  }
 }
 
 TEST(FewerSubsteps, NotWhileAnythingElseMoves) {
@@ -128,6 +210,23 @@ static void expect_rest_through_changes() {
 TEST(FewerSubsteps, WhatRestsStaysAtRestAsTheyChange) {
   expect_rest_through_changes<2>();
   expect_rest_through_changes<3>();
+}
+
+template <int D>
+static void expect_pendulum_hangs_through_changes() {
+  Pendulum<D> pendulum({});
+  step(pendulum.world, 60);
+  for (const std::uint32_t substeps : {4u, 1u, 4u, 1u, 2u, 1u}) {
+    pendulum.turn(substeps == 4 ? 4.0f : substeps == 2 ? 2.0f : 0.0f);
+    step(pendulum.world, 1);
+    ASSERT_EQ(pendulum.substeps(), substeps);
+    EXPECT_LT(length(view(pendulum.world, pendulum.heavy).velocity), 2.0e-3f);
+    EXPECT_NEAR(view(pendulum.world, pendulum.heavy).position[1], pendulum.kHeight, 1.0e-3f);
+  }
+}
+TEST(FewerSubsteps, WhatHangsStaysAtRestAsTheyChange) {
+  expect_pendulum_hangs_through_changes<2>();
+  expect_pendulum_hangs_through_changes<3>();
 }
 
 TEST(FewerSubsteps, DampingIsThatOfTheirLength) {
