@@ -81,6 +81,32 @@ Tuning tuning_of(std::uint32_t choice) {
   return tuning;
 }
 
+Tuning tuning_after(const Tuning& now, const Command& command) {
+  const Tuning other = tuning_of(command.a + 64 * command.b);
+  if (command.b % 2 == 0) return other;
+  Tuning changed = now;
+  switch (command.b / 2 % 6) {
+    case 0:
+      changed.order = static_cast<solver::Order>(command.a % 3);
+      break;
+    case 1:
+      changed.substeps = 1 + command.a % 8;
+      break;
+    case 2:
+      changed.contact_block = other.contact_block;
+      break;
+    case 3:
+      changed.joint_solver = other.joint_solver;
+      break;
+    case 4:
+      changed.sleep_s = other.sleep_s;
+      break;
+    default:
+      changed.warm_starting = other.warm_starting;
+  }
+  return changed;
+}
+
 template <int D>
 solver::WorldDef<D> world_of(const Case& example) {
   solver::WorldDef<D> def;

@@ -16,6 +16,10 @@ inline constexpr std::uint32_t kShelf = 3;
 
 solver::Tuning tuning_of(std::uint32_t choice);
 
+/// What a kTuning command asks of a world that has `now`: a whole other tuning, or, where b is odd,
+/// the same with one thing changed, as a cache must notice it whatever else stays.
+solver::Tuning tuning_after(const solver::Tuning& now, const Command& command);
+
 template <int D>
 solver::WorldDef<D> world_of(const Case& example);
 

@@ -16,6 +16,7 @@ void Played::add(const Played& other) {
   asleep += other.asleep;
   particles += other.particles;
   crowded_ticks += other.crowded_ticks;
+  paced_ticks += other.paced_ticks;
 }
 
 namespace {
@@ -95,12 +96,14 @@ class Pair {
 
   void count() {
     const solver::WorldState<D>& state = one_.world().state();
+    const solver::Statistics& statistics = one_.world().statistics();
     ++played_.ticks;
     played_.contacts += state.contacts.size();
     played_.joints += state.joints.size() - state.free_joints.size();
     played_.particles += state.particles.size() - state.free_particles.size();
-    played_.asleep += one_.world().statistics().asleep;
+    played_.asleep += statistics.asleep;
     played_.crowded_ticks += state.contacts.size() > 64 ? 1 : 0;
+    played_.paced_ticks += statistics.substeps < one_.world().tuning().substeps ? 1 : 0;
   }
 
   void finish() {

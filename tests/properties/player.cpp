@@ -207,7 +207,7 @@ Answer Player<D>::obey_world(const Command& command) {
       return answer_of(world.set_material(
           command.a % 4, {number_of(command, 0), 0.3f, number_of(command, 1), 0.01f}));
     case Op::kTuning:
-      return answer_of(world.set_tuning(tuning_of(command.a)));
+      return answer_of(world.set_tuning(tuning_after(world.tuning(), command)));
     default:
       if (command.b % 2 == 0) return answer_of(world.resize_registers(command.a % 20));
       return answer_of(world.set_register(command.a % 18, command.b));

@@ -78,7 +78,7 @@ TEST_P(Properties, AnyCallsInAnySettingWithAnyRestoresAreTheSame) {
   std::printf(
       "%dD: %llu cases from seed %llu in %.1f s: %llu ticks, %llu calls (%llu refused), "
       "%llu cases faulted; per tick %.1f contacts, %.2f joints, %.1f asleep, %.2f particles; "
-      "%llu ticks with more than 64 contacts\n",
+      "%llu ticks with more than 64 contacts, %llu in fewer substeps\n",
       GetParam(), static_cast<unsigned long long>(played.cases),
       static_cast<unsigned long long>(seed), seconds.count(),
       static_cast<unsigned long long>(played.ticks), static_cast<unsigned long long>(played.calls),
@@ -86,7 +86,8 @@ TEST_P(Properties, AnyCallsInAnySettingWithAnyRestoresAreTheSame) {
       static_cast<unsigned long long>(played.faulted),
       double(played.contacts) / double(played.ticks), double(played.joints) / double(played.ticks),
       double(played.asleep) / double(played.ticks), double(played.particles) / double(played.ticks),
-      static_cast<unsigned long long>(played.crowded_ticks));
+      static_cast<unsigned long long>(played.crowded_ticks),
+      static_cast<unsigned long long>(played.paced_ticks));
   ASSERT_FALSE(found.failed) << "CYCLOID_SEED=" << seed << " CYCLOID_CASES=" << 2 * count << '\n'
                              << show(found);
   // Dull cases would prove nothing.

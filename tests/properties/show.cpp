@@ -52,6 +52,9 @@ static void remark(const Case& example, const Command& command, std::ostream& ou
     case Op::kRevisit:
       out << kRevisitNames[command.b % std::size(kRevisitNames)];
       return;
+    case Op::kTuning:
+      out << (command.b % 2 == 0 ? "another tuning" : "one thing of the tuning");
+      return;
     default:
       out << "of number " << command.a << " modulo those alive";
   }
