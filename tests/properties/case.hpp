@@ -13,6 +13,7 @@ enum class Op : std::uint8_t {
   kCreateBody,
   kRevisit,  ///< Only the second run: the state is saved and comes back, see `Revisit`.
   kCreateGrid,
+  kCreateChain,
   kDestroyBody,
   kSetPose,
   kSetVelocity,

@@ -260,6 +260,27 @@ std::vector<Piece<D>> grid_of(const Command& command) {
   return pieces;
 }
 
+template <int D>
+std::vector<Piece<D>> chain_of(const Command& command) {
+  Piece<D> piece;
+  piece.body.kind = BodyKind::kStatic;
+  piece.body.position = vector_of<D>(command, 0);
+  std::vector<Piece<D>> pieces = {piece};
+  piece.body.kind = BodyKind::kDynamic;
+  ShapeDef<D> shape;
+  shape.radius = 0.2f;
+  piece.shapes = {shape};
+  piece.body.mass = 1.3f;
+  const std::uint32_t links = 1 + command.a % 6;
+  for (std::uint32_t i = 0; i < links; ++i) {
+    // Down at rest, or to the side, so that it swings.
+    piece.body.position[command.a % 4 == 3 ? 0 : 1] -= 0.9f;
+    if (i + 1 == links && command.b % 4 != 3) piece.body.mass = 70.0f;
+    pieces.push_back(piece);
+  }
+  return pieces;
+}
+
 static constexpr JointKind kJointKinds[] = {
     JointKind::kRevolute, JointKind::kDistance, JointKind::kWeld,   JointKind::kPrismatic,
     JointKind::kWheel,    JointKind::kMotor,    JointKind::kTarget, JointKind::kPulley,
@@ -337,6 +358,8 @@ template Piece<2> piece_of(const Command&);
 template Piece<3> piece_of(const Command&);
 template std::vector<Piece<2>> grid_of(const Command&);
 template std::vector<Piece<3>> grid_of(const Command&);
+template std::vector<Piece<2>> chain_of(const Command&);
+template std::vector<Piece<3>> chain_of(const Command&);
 template solver::WorldDef<2> world_of(const Case&);
 template solver::WorldDef<3> world_of(const Case&);
 template solver::JointDef<2> joint_of(const Command&);

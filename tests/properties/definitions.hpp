@@ -38,6 +38,10 @@ Piece<D> piece_of(const Command& command);
 /// Boxes and balls in rows, enough of them for workers and lanes to share.
 template <int D>
 std::vector<Piece<D>> grid_of(const Command& command);
+/// A static body and balls that belong on it one after the other by joints at their own centres,
+/// mostly with a heavy one at the end: islands that are solved at once.
+template <int D>
+std::vector<Piece<D>> chain_of(const Command& command);
 /// `body_a` and `body_b` are left to the caller.
 template <int D>
 solver::JointDef<D> joint_of(const Command& command);

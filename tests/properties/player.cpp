@@ -82,6 +82,24 @@ Answer Player<D>::create(const Piece<D>& piece) {
 }
 
 template <int D>
+std::vector<Answer> Player<D>::create_chain(const Command& command) {
+  std::vector<Answer> answers;
+  solver::JointDef<D> def;
+  def.kind = command.b % 8 == 6 ? solver::JointKind::kWeld : solver::JointKind::kRevolute;
+  solver::Vec<D> last = solver::Vec<D>::zero();
+  for (const Piece<D>& piece : chain_of<D>(command)) {
+    answers.push_back(create(piece));
+    if (answers.back().code != solver::Code::kOk) return answers;
+    def.body_b = bodies_.back();
+    def.anchor_a = piece.body.position - last;
+    if (answers.size() > 1) answers.push_back(keep(world_->create_joint(def), joints_));
+    def.body_a = def.body_b;
+    last = piece.body.position;
+  }
+  return answers;
+}
+
+template <int D>
 Answer Player<D>::step() {
   if (stranger_ != nullptr) (void)stranger_->step();
   const Answer answer = answer_of(world_->step());
@@ -223,6 +241,8 @@ std::vector<Answer> Player<D>::obey(const Command& command) {
     case Op::kCreateGrid:
       for (const Piece<D>& piece : grid_of<D>(command)) answers.push_back(create(piece));
       return answers;
+    case Op::kCreateChain:
+      return create_chain(command);
     case Op::kDestroyBody:
       destroyed_ = true;
       return {drop(world_->destroy_body(one_of(bodies_, command.a)), command.a, bodies_)};

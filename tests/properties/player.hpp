@@ -56,6 +56,7 @@ class Player {
   template <class Id>
   Answer drop(solver::Error error, std::uint32_t choice, std::vector<Id>& ids);
   Answer create(const Piece<D>& piece);
+  std::vector<Answer> create_chain(const Command& command);
   Answer obey_body(const Command& command, solver::BodyId id);
   Answer obey_joint(const Command& command);
   Answer obey_particle(const Command& command);

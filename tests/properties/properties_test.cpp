@@ -96,6 +96,7 @@ TEST_P(Properties, AnyCallsInAnySettingWithAnyRestoresAreTheSame) {
   EXPECT_GT(played.particles, played.ticks / 20);
   EXPECT_GT(played.asleep, played.ticks / 20);
   EXPECT_GT(played.crowded_ticks, played.ticks / 100);
+  EXPECT_GT(played.paced_ticks, played.ticks / 1000);
   EXPECT_LT(played.refused, played.calls / 2);
   EXPECT_LT(played.faulted, played.cases / 4);
 }

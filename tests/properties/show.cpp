@@ -5,13 +5,13 @@
 namespace cycloid::properties {
 
 static constexpr const char* kOpNames[] = {
-    "Step",           "CreateBody",     "Revisit",         "CreateGrid",   "DestroyBody",
-    "SetPose",        "SetVelocity",    "Force",           "Torque",       "Impulse",
-    "AngularImpulse", "Gravity",        "GravityScale",    "Damping",      "Mass",
-    "Material",       "Filter",         "CreateJoint",     "DestroyJoint", "Motor",
-    "Target",         "Steering",       "Anchor",          "Limits",       "Spring",
-    "Tuning",         "CreateParticle", "DestroyParticle", "CreateLink",   "DestroyLink",
-    "CreatePin",      "DestroyPin",     "Registers"};
+    "Step",        "CreateBody",     "Revisit",        "CreateGrid",      "CreateChain",
+    "DestroyBody", "SetPose",        "SetVelocity",    "Force",           "Torque",
+    "Impulse",     "AngularImpulse", "Gravity",        "GravityScale",    "Damping",
+    "Mass",        "Material",       "Filter",         "CreateJoint",     "DestroyJoint",
+    "Motor",       "Target",         "Steering",       "Anchor",          "Limits",
+    "Spring",      "Tuning",         "CreateParticle", "DestroyParticle", "CreateLink",
+    "DestroyLink", "CreatePin",      "DestroyPin",     "Registers"};
 static_assert(std::size(kOpNames) == static_cast<std::size_t>(Op::kCount));
 
 static constexpr const char* kRevisitNames[] = {"saved and restored",
@@ -44,6 +44,9 @@ static void remark(const Case& example, const Command& command, std::ostream& ou
       return;
     case Op::kCreateGrid:
       out << grid_of<2>(command).size() << " bodies";
+      return;
+    case Op::kCreateChain:
+      out << chain_of<2>(command).size() << " bodies";
       return;
     case Op::kCreateJoint:
       out << name_of(joint_of<2>(command).kind) << " of bodies " << command.a << " and "
