@@ -72,6 +72,7 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
   StepContext<D> now = context;
   for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
     // Islands that have all take back what leans; in one order they stay at rest for longer.
+    now.is_first = substep == 0;
     now.odd = (tick + substep) % 2 != 0;
     const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
     traced.substep = substep;
@@ -126,7 +127,7 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   Lot whole = lay_out_contacts<D, W>(workers, scratch);
   const bool divided = !scratch.lots.all.empty();
   if (!divided) prepare_contacts<D, W>(context, state, whole, workers, scratch);
-  prepare_islands<D, W>(context, workers, scratch);
+  prepare_islands<D, W>(context, state, workers, scratch);
   const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
   scratch.substeps = paced.tuning.substeps;
   prepare_pins(paced, state, workers, scratch);

@@ -21,7 +21,8 @@ struct StepContext {
   float slop;                      ///< m of overlap that velocity sweeps leave alone.
   std::uint32_t lot_contacts = 0;  ///< Of a lot that is asked for; 0: what suits. Changes no bit.
   int lanes = 0;                   ///< Width that is asked for; 0: what suits. Changes no bit.
-  bool odd = false;  ///< Of the number of the tick and the substep in sum: see point_in_turn.
+  bool odd = false;      ///< Of the number of the tick and the substep in sum: see point_in_turn.
+  bool is_first = true;  ///< Of the substeps of the tick.
 };
 
 /// Stiffness above a fraction of the substep rate turns into noise: contacts are held to an eighth

@@ -96,11 +96,11 @@ void IslandSolver<D>::keep_of_guess(const Island& island, Wide share) {
   }
 }
 
-/// Loaded islands are shared with soft sweeps, but for their joints; others are solved to the end.
+/// What is shared with soft sweeps is left to them the sooner; others are solved to the end.
 template <int D>
 static Effort effort_of(const IslandSolver<D>& solver,
                         const typename IslandSolver<D>::Island& island) {
-  return solver.only_thin && island.joint_count == 0 ? kBrief : kThorough;
+  return solver.is_shared(island) ? kBrief : kThorough;
 }
 
 /// Which rows of contacts are equalities, by the natural map.

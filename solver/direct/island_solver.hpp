@@ -149,6 +149,7 @@ class IslandSolver {
     bool taken;                  ///< Solved at once in this tick; else the sweeps have it.
     bool weighed;                ///< They have it, but a guess that has gone wrong is weakened.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
+    bool changes;   ///< One of its contacts began or ended to touch in this tick.
     bool stirred;   ///< The substep before had to solve it.
     bool calm;      ///< Of contacts alone, and the substep began with all its bodies slow,
     bool sways;     ///< but one of them not at rest.
@@ -209,6 +210,10 @@ class IslandSolver {
     const int at = held_in[place];
     return at >= 0 && islands[static_cast<std::size_t>(at)].numbered;
   }
+
+  /// Whether soft sweeps go on from what a solve of this island leaves: where it is a loaded one of
+  /// contacts alone. Joints, which they do not close, would part.
+  bool is_shared(const Island& island) const { return only_thin && island.joint_count == 0; }
 
   /// The groups of an island: of its contacts, of its joints, of both; and the rows of a group.
   std::span<const IslandRows<D>> contacts_of(const Island& island) const {

@@ -214,7 +214,7 @@ static bool begin_islands(StepScratch<D>& scratch) {
     island.taken = island.wanted && island.solvable;
     island.weighed = island.wanted && !island.solvable && may_be_weighed<D>(island);
     island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
-    island.swept = island.stirred = island.corrects = false;
+    island.swept = island.changes = island.stirred = island.corrects = false;
     if (!island.taken && !island.weighed) continue;
     find_heaviest(scratch, island);
     if (island.joint_count > 0) scratch.islands_solved.guess.resize(scratch.motions.size());

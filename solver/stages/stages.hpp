@@ -89,7 +89,8 @@ void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>
 template <int D, int W>
 void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
-void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
+void prepare_islands(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                     StepScratch<D>& scratch);
 template <int D, int W>
 StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D>& state,
                                StepScratch<D>& scratch);
