@@ -71,8 +71,8 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
   }
   StepContext<D> now = context;
   for (std::uint32_t substep = 0; substep < context.tuning.substeps; ++substep) {
-    // Islands that have all take back what leans; in one order they stay at rest for longer.
     now.is_first = substep == 0;
+    // Islands that have all take back what leans; in one order they stay at rest for longer.
     now.odd = (tick + substep) % 2 != 0;
     const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
     traced.substep = substep;
