@@ -137,6 +137,7 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   else
     solve_lot<D, W>(context.h, paced, state, traced, whole, workers, scratch);
   traced(Phase::kStore);
+  fly_bodies(paced, state, workers, scratch);
   stop_fast_bodies(context, state, workers, scratch);
   traced(Phase::kStop);
 }
@@ -167,6 +168,7 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   traced(Phase::kIslands);
   color(state, scratch);
   divide_into_lots(context, state, scratch);
+  part_flying(context, state, scratch);
   traced(Phase::kColors);
   prepare_bodies(context, state, workers, scratch);
   prepare_joints(context, state, workers, scratch);

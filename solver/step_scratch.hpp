@@ -170,7 +170,9 @@ struct StepScratch : ContactList<D> {
   std::vector<std::uint8_t> awake;          ///< By body, and 0 for the resting one of unused lanes.
   std::vector<std::uint32_t> awake_bodies;  ///< Their slots, ascending: alone they move.
   Lots lots;
-  std::vector<std::uint32_t> moving_bodies;  ///< Who is awake, lot after lot.
+  std::vector<std::uint32_t> moving_bodies;  ///< Who is awake, lot after lot; who flies is last.
+  int flying = 0;                            ///< So many that nothing touches or holds.
+  std::vector<std::uint8_t> is_met;          ///< By body, for part_flying, which leaves it 0.
 
   std::vector<Motion<D>> motions;  ///< By body slot, and one more at rest for unused lanes.
   std::vector<BodyMass<D>> masses;

@@ -55,6 +55,8 @@ struct Statistics {
                            ///< of blocks where islands are solved at once.
   std::uint32_t lots = 1;  ///< Groups of islands that were solved apart. Depends on what a step is
                            ///< asked for and has done before, and so on more than the state.
+  std::uint32_t flying = 0;  ///< Bodies that were moved at once for all substeps, because nothing
+                             ///< touched or held them; 0 where they are few, or someone looks on.
 };
 
 /// A body as a user sees it: the pose of its frame, not of its centre of mass.

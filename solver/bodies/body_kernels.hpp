@@ -29,8 +29,14 @@ struct BodyKernels {
   /// x' = x + h v,  q' = exp(h w) q, at unit length, to the bit as turn_by turns one.
   static void move(float h, const std::uint32_t* slots, int count, Motion<2>* motions);
 
-  /// The same of W bodies of space, which turn as turn_freely has it. @returns false where one of
-  /// them turns by half a radian or more, for which a lane has no series; then nothing has changed.
+  /// The same after v' = (v + h a) / (1 + h c), as integrate_velocities has it, in each of so many
+  /// substeps. @param accelerations  In the order of the slots.
+  static void fly(float h, int substeps, const Acceleration<2>* accelerations,
+                  const std::uint32_t* slots, int count, Motion<2>* motions);
+
+  /// The same as `move` of W bodies of space, which turn as turn_freely has it. @returns false
+  /// where one of them turns by half a radian or more, for which a lane has no series; then nothing
+  /// has changed.
   static bool move_in_space(float h, const Body<3>* bodies, const std::uint32_t* slots,
                             Motion<3>* motions);
 

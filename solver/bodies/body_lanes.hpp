@@ -13,13 +13,13 @@ namespace cycloid::solver {
 /// The text of BodyKernels, for the files that compile it and no others. Every function is a
 /// template on W, so that those compiled for one instruction set have names of their own.
 
+/// @param by  The rotation by `turn` [rad].
 template <int W>
-[[gnu::always_inline]] inline void move_lanes(Lanes<W> h, MotionLanes<2, W>& motion) {
+[[gnu::always_inline]] inline void move_lanes(Lanes<W> h, Lanes<W> turn,
+                                              const Rotation<2, Lanes<W>>& by,
+                                              MotionLanes<2, W>& motion) {
   using L = Lanes<W>;
   motion.delta_position += h * motion.velocity;
-  const L turn = h * motion.spin[0];
-  Rotation<2, L> by;
-  sin_cos(turn, by[1], by[0]);
   const Rotation<2, L> turned = compose(by, motion.delta_rotation);
   const L size = sqrt(dot(turned, turned));
   const auto has_size = size > L(1.0e-12f);
@@ -39,8 +39,71 @@ void BodyKernels<W>::move(float h, const std::uint32_t* slots, int count, Motion
     LaneIndices<W> bodies;
     const LaneBits used = take_slots<W>(slots + begin, count - begin, bodies);
     MotionLanes<2, W> motion = gather<2, W>(motions, bodies);
-    move_lanes<W>(Lanes<W>(h), motion);
+    const Lanes<W> turn = Lanes<W>(h) * motion.spin[0];
+    Rotation<2, Lanes<W>> by;
+    sin_cos(turn, by[1], by[0]);
+    move_lanes<W>(Lanes<W>(h), turn, by, motion);
     scatter_quads<0, kPoseQuads<2>>(motion, used, bodies, motions);
+  }
+}
+
+/// W bodies that nothing touches, on their way through a tick.
+template <int W>
+struct FlightLanes {
+  MotionLanes<2, W> motion;
+  Lanes<W> factor[4];
+  Lanes<W> rate[4];
+  Lanes<W> turn;  ///< Of the last substep, rad; none is 0, whose rotation stands beside it.
+  Rotation<2, Lanes<W>> by;
+  LaneIndices<W> bodies;
+  LaneBits used;
+};
+
+template <int W>
+[[gnu::always_inline]] inline void take_off(const Acceleration<2>* accelerations,
+                                            const std::uint32_t* slots, int left,
+                                            const Motion<2>* motions, FlightLanes<W>& flight) {
+  static_assert(sizeof(Acceleration<2>) == 2 * sizeof(Quad));
+  flight.used = take_slots<W>(slots, left, flight.bodies);
+  LaneIndices<W> place;
+  for (int lane = 0; lane < kLaneCount<W>; ++lane)
+    place[lane] = static_cast<std::uint32_t>(lane < left ? lane : left - 1);
+  gather_columns<W>(accelerations, place, 0, flight.factor);
+  gather_columns<W>(accelerations, place, 1, flight.rate);
+  flight.motion = gather<2, W>(motions, flight.bodies);
+  flight.turn = Lanes<W>(0.0f);
+  flight.by = {{Lanes<W>(1.0f), Lanes<W>(0.0f)}};
+}
+
+/// Most bodies turn as far in each substep as in the one before, or not at all.
+template <int W>
+[[gnu::always_inline]] inline void fly_on(Lanes<W> h, FlightLanes<W>& flight) {
+  using L = Lanes<W>;
+  for (int i = 0; i < 3; ++i) {
+    L& moved = component(flight.motion, i);
+    moved = flight.factor[i] * (moved + h * flight.rate[i]);
+  }
+  const L turn = h * flight.motion.spin[0];
+  if (bits_of<W>(turn == flight.turn) != kAllLanes<W>) sin_cos(turn, flight.by[1], flight.by[0]);
+  flight.turn = turn;
+  move_lanes<W>(h, turn, flight.by, flight.motion);
+}
+
+template <int W>
+void BodyKernels<W>::fly(float h, int substeps, const Acceleration<2>* accelerations,
+                         const std::uint32_t* slots, int count, Motion<2>* motions) {
+  constexpr int kAtOnce = 4;  // Each waits for its own root and quotient, meanwhile others do not.
+  FlightLanes<W> flights[kAtOnce];
+  for (int begin = 0; begin < count;) {
+    int taken = 0;
+    for (; taken < kAtOnce && begin < count; ++taken, begin += kLaneCount<W>)
+      take_off<W>(accelerations + begin, slots + begin, count - begin, motions, flights[taken]);
+    for (int substep = 0; substep < substeps; ++substep)
+      for (int i = 0; i < taken; ++i) fly_on<W>(Lanes<W>(h), flights[i]);
+    for (int i = 0; i < taken; ++i) {
+      FlightLanes<W>& flight = flights[i];
+      scatter_quads<0, kPoseQuads<2>>(flight.motion, flight.used, flight.bodies, motions);
+    }
   }
 }
 

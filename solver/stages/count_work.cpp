@@ -101,6 +101,7 @@ Statistics count_work(const WorldState<D>& state, Workers& workers, const StepSc
   count_rows(state, workers, scratch, statistics);
   if (!scratch.lots.all.empty())
     statistics.lots = static_cast<std::uint32_t>(scratch.lots.all.size());
+  statistics.flying = static_cast<std::uint32_t>(scratch.flying);
   statistics.asleep = scratch.bodies_asleep;
   return statistics;
 }

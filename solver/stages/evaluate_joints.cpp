@@ -42,6 +42,7 @@ static void follow_inertia(const StepScratch<D>& scratch, Range range, PinBlocks
 template <int D>
 void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, float time_s,
                      Workers& workers, StepScratch<D>& scratch) {
+  if (scratch.joint_rows.empty()) return;
   with_blocks(scratch.pins, [&]<int W>(PinBlocks<D, W>& pins) {
     workers.parallel_for(static_cast<int>(pins.blocks.size()), kBlockGrain, [&](Range range) {
       follow_inertia(scratch, range, pins);

@@ -42,6 +42,9 @@ template <int D>
 void divide_into_lots(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch);
 template <int D>
+void part_flying(const StepContext<D>& context, const WorldState<D>& state,
+                 StepScratch<D>& scratch);
+template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch);
 /// The part of prepare_bodies that depends on the length of a substep.
@@ -116,6 +119,9 @@ void solve_constraints(const StepContext<D>& context, Sweep sweep, const Lot& lo
 template <int D>
 void integrate_positions(const StepContext<D>& context, const WorldState<D>& state, const Lot& lot,
                          Workers& workers, StepScratch<D>& scratch);
+template <int D>
+void fly_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
+                StepScratch<D>& scratch);
 
 template <int D, int W>
 void solve_pseudo_velocities(const StepContext<D>& context, const Lot& lot, Workers& workers,
@@ -191,6 +197,7 @@ PinRange<D, W> pin_range(StepScratch<D>& scratch, Range range) {
 template <int D, class OnPins, class OnRow>
 void for_each_joint_by_color(Workers& workers, StepScratch<D>& scratch, OnPins&& on_pins,
                              OnRow&& on_row) {
+  if (scratch.joint_rows.empty()) return;
   const Coloring& single = scratch.single_rows;
   const auto row_at = [&](int i) -> JointRow<D>& {
     const int place = single.order[static_cast<std::size_t>(i)];

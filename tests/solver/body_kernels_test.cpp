@@ -44,6 +44,47 @@ static void expect_to_move_as_one(const std::vector<Motion<2>>& motions,
         << "body " << i << " of " << bodies.size() << ", width " << W;
 }
 
+/// Of a body that something may slow down, or drive; of every fifth of one without mass.
+static Acceleration<2> drawn_acceleration(std::mt19937& random) {
+  Acceleration<2> of{{1.0f, 1.0f, 1.0f, 1.0f}, {-0.0f, -0.0f, -0.0f, -0.0f}};
+  if (random() % 5 == 0) return of;
+  const float slows = random() % 2 == 0 ? 0.0f : 1.0f;
+  for (int i = 0; i < 3; ++i) {
+    of.factor[i] = 1.0f - slows * std::abs(drawn(random, 0.1f));
+    if (i < 2 || random() % 2 == 0) of.rate[i] = drawn(random, 30.0f);
+  }
+  return of;
+}
+
+/// Substep after substep, as the stages have it.
+static void fly_alone(float h, int substeps, const Acceleration<2>& of, Motion<2>& motion) {
+  for (int substep = 0; substep < substeps; ++substep) {
+    for (int i = 0; i < 2; ++i)
+      motion.velocity[i] = of.factor[i] * (motion.velocity[i] + h * of.rate[i]);
+    motion.spin[0] = of.factor[2] * (motion.spin[0] + h * of.rate[2]);
+    motion.delta_position += h * motion.velocity;
+    turn_by(h * motion.spin, motion);
+  }
+}
+
+template <int W>
+static void expect_to_fly_as_one(const std::vector<Motion<2>>& motions,
+                                 const std::vector<std::uint32_t>& bodies,
+                                 const std::vector<Acceleration<2>>& accelerations) {
+  constexpr float kStep = 1.0f / 240.0f;
+  for (const int substeps : {1, 2, 4, 7}) {
+    std::vector<Motion<2>> expected = motions;
+    for (std::size_t i = 0; i < bodies.size(); ++i)
+      fly_alone(kStep, substeps, accelerations[i], expected[bodies[i]]);
+    std::vector<Motion<2>> flown = motions;
+    BodyKernels<W>::fly(kStep, substeps, accelerations.data(), bodies.data(),
+                        static_cast<int>(bodies.size()), flown.data());
+    for (std::size_t i = 0; i < flown.size(); ++i)
+      EXPECT_EQ(std::memcmp(&expected[i], &flown[i], sizeof(float) * kMotionComponents<2>), 0)
+          << "body " << i << " of " << bodies.size() << ", width " << W;
+  }
+}
+
 /// A ball, capsule, triangle or polygon of four corners.
 static ShapeDef<2> drawn_shape(std::mt19937& random) {
   ShapeDef<2> shape = box(1.0f + 0.5f * drawn(random, 1.0f), 1.0f + 0.5f * drawn(random, 1.0f));
@@ -159,6 +200,23 @@ TEST(BodyKernels, MoveAnyNumberOfBodiesAsOneByOneAtEveryWidth) {
       bodies.push_back(2 * i + 1);
     }
     for_each_width<1, 4>([&]<int W>() { expect_to_move_as_one<W>(motions, bodies); });
+    ASSERT_FALSE(HasFailure());
+  }
+}
+
+TEST(BodyKernels, FlyAnyNumberOfBodiesAsOneByOneAtEveryWidth) {
+  std::mt19937 random(20261128);
+  for (std::uint32_t count = 1; count <= 70; ++count) {
+    std::vector<Motion<2>> motions;
+    std::vector<std::uint32_t> bodies;
+    std::vector<Acceleration<2>> accelerations;
+    for (std::uint32_t i = 0; i < count; ++i) {
+      motions.push_back(drawn_motion(random));
+      motions.push_back(drawn_motion(random));  // Every second one is held by something.
+      bodies.push_back(2 * (count - i) - 1);
+      accelerations.push_back(drawn_acceleration(random));
+    }
+    for_each_width<1, 4>([&]<int W>() { expect_to_fly_as_one<W>(motions, bodies, accelerations); });
     ASSERT_FALSE(HasFailure());
   }
 }
