@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "bench/runner/growth.hpp"
+#include "bench/runner/heaps.hpp"
 #include "bench/runner/measure.hpp"
 #include "bench/runner/report.hpp"
 #include "scenes/catalogue.hpp"
@@ -27,6 +28,7 @@ struct Command {
   std::vector<std::string> groups;
   bool all = false;
   bool list = false;
+  int heaps = 0;  ///< Starts; 0: the scenes are measured instead.
   std::string csv;
   std::string markdown;  ///< The file whose sections are replaced.
   std::string figures;   ///< The folder of the growth chart.
@@ -115,7 +117,16 @@ int write_reports(const Command& command, const std::vector<bench::SceneResult>&
   return exit;
 }
 
+/// How far heaps overlap in each engine, instead of how long they take.
+int run_heaps(const Command& command) {
+  const std::string table = bench::heaps_markdown(bench::measure_heaps(command.heaps));
+  std::printf("%s", table.c_str());
+  if (command.markdown.empty()) return 0;
+  return report(bench::replace_section(command.markdown, "heaps", table));
+}
+
 int run(const Command& command) {
+  if (command.heaps > 0) return run_heaps(command);
   const std::vector<worlds::BenchWorld> scenes = chosen(command);
   if (command.list) {
     for (const worlds::BenchWorld& world : worlds::bench_worlds())
@@ -150,6 +161,9 @@ void add_options(CLI::App& app, Command& command) {
       ->check(CLI::IsMember({"small", "plane", "space", "growth"}));
   app.add_flag("--all", command.all, "Every scene, five runs each");
   app.add_flag("--list", command.list, "Print the scenes and what they are");
+  app.add_option("--heaps", command.heaps,
+                 "Drop so many heaps in each engine, and say how far they overlap")
+      ->check(CLI::Range(2, 100000));
   app.add_option("--runs", options.runs, "Repetitions of each scene; the median counts")
       ->check(CLI::Range(1, 1000));
   app.add_option("--worlds", options.worlds, "Worlds in rotation; by default the scene's")

@@ -1,0 +1,29 @@
+#pragma once
+
+#include <string>
+#include <vector>
+
+namespace cycloid::bench {
+
+/// How far everything overlaps in the heaps of one engine, one number for each start. Of one heap
+/// the deepest overlap is chance; over many, starts that engines have in common tell them apart.
+struct HeapOverlaps {
+  std::string engine;
+  /// Root of the mean square [mm] over all pairs that overlap, by the ruler of
+  /// bench/peers/accuracy.hpp, in every third tick: half a second to three seconds after the start,
+  /// in which a heap comes down.
+  std::vector<double> landing_mm;
+  std::vector<double> resting_mm;  ///< The same of the two seconds behind it.
+};
+
+/// Drops heaps of 40 to 400 bodies, that many of sizes as evenly apart as can be, in every engine:
+/// ours by default and by Soft Step, and those peers that hold planar scenes. From the second heap
+/// of a size on bodies begin with speeds of their own of up to 1 mm/s (trials/perturb.hpp).
+/// Exits with a message where an engine loses a body.
+std::vector<HeapOverlaps> measure_heaps(int starts);
+
+/// A row for each engine: the means over all starts, and of the differences from the first engine
+/// start by start, with their standard errors. @pre two starts or more.
+std::string heaps_markdown(const std::vector<HeapOverlaps>& engines);
+
+}  // namespace cycloid::bench
