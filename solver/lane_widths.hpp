@@ -64,15 +64,32 @@ int width_that_saves(BlocksOf&& blocks_of) {
   return of_eight < blocks_of(4) ? kAvx2Lanes : 4;
 }
 
-/// How many of a range go W at a time. The last ones, where they would leave half of the lanes
-/// empty, take less time in lanes of `kFewLanes`.
+/// The next narrower width, down to 4; of 4 and 1 themselves.
 template <int W>
-constexpr int count_for_lanes(int count) {
-  const int last = count % kLaneCount<W>;
-  return 2 * last > kLaneCount<W> ? count : count - last;
+inline constexpr int kFewerLanes = W == kAvx512Lanes ? kAvx2Lanes
+                                   : W == kAvx2Lanes ? 4
+                                                     : W;
+
+/// Calls act.template operator()<V>(from, to) for ranges that make up [begin, end), W at a time.
+/// The last ones, where they would leave half of the lanes empty, take less time in fewer.
+template <int W, class Act>
+void in_lanes(int begin, int end, Act&& act) {
+  const int last = (end - begin) % kLaneCount<W>;
+  const bool fewer = W != kFewerLanes<W> && 2 * last <= kLaneCount<W>;
+  const int wide = fewer ? end - last : end;
+  if (wide > begin) act.template operator()<W>(begin, wide);
+  if constexpr (W != kFewerLanes<W>)
+    if (wide < end) in_lanes<kFewerLanes<W>>(wide, end, act);
 }
-template <int W>
-inline constexpr int kFewLanes = kLaneCount<W> < 4 ? W : 4;
+
+/// Calls act.template operator()<V>() for the narrowest width, of W and those below it, of which
+/// one instruction holds so many.
+template <int W, class Act>
+decltype(auto) in_lanes_that_hold(int count, Act&& act) {
+  if constexpr (W != kFewerLanes<W>)
+    if (count <= kLaneCount<kFewerLanes<W>>) return in_lanes_that_hold<kFewerLanes<W>>(count, act);
+  return act.template operator()<W>();
+}
 
 /// Calls act.template operator()<W>() for the width W, one of LaneWidths.
 template <class Act>

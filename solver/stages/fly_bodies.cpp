@@ -55,11 +55,13 @@ void part_flying(const StepContext<D>& context, const WorldState<D>& state,
 static void fly_range(const StepContext<2>& context, const WorldState<2>&, Range range,
                       StepScratch<2>& scratch) {
   const auto first = static_cast<std::size_t>(range.begin);
-  at_width(widest_lanes(context.lanes), [&]<int W>() {
-    BodyKernels<W>::fly(context.h, static_cast<int>(context.tuning.substeps),
+  const int count = range.end - range.begin;
+  const auto fly = [&]<int V>() {
+    BodyKernels<V>::fly(context.h, static_cast<int>(context.tuning.substeps),
                         scratch.accelerations.data() + first, scratch.moving_bodies.data() + first,
-                        range.end - range.begin, scratch.motions.data());
-  });
+                        count, scratch.motions.data());
+  };
+  at_width(widest_lanes(context.lanes), [&]<int W>() { in_lanes_that_hold<W>(count, fly); });
 }
 
 /// In space a turning inertia changes the acceleration, so the stages take turns, with few bodies.

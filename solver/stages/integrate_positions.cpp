@@ -50,21 +50,15 @@ static std::span<const std::uint32_t> slots_of(Range range, const StepScratch<D>
                static_cast<std::size_t>(range.end - range.begin));
 }
 
-/// Moves the bodies of these slots W at a time.
-template <int W>
-static void move_in_lanes(float h, std::span<const std::uint32_t> slots, Motion<2>* motions) {
-  const auto count = static_cast<int>(slots.size());
-  const int wide = count_for_lanes<W>(count);
-  BodyKernels<W>::move(h, slots.data(), wide, motions);
-  BodyKernels<kFewLanes<W>>::move(h, slots.data() + wide, count - wide, motions);
-}
-
 static void move_range(const StepContext<2>& context, const WorldState<2>&, Range range,
                        StepScratch<2>& scratch) {
-  const auto slots = slots_of(range, scratch);
+  const std::uint32_t* slots = scratch.moving_bodies.data();
   Motion<2>* motions = scratch.motions.data();
-  at_width(widest_lanes(context.lanes),
-           [&]<int W>() { move_in_lanes<W>(context.h, slots, motions); });
+  at_width(widest_lanes(context.lanes), [&]<int W>() {
+    in_lanes<W>(range.begin, range.end, [&]<int V>(int begin, int end) {
+      BodyKernels<V>::move(context.h, slots + begin, end - begin, motions);
+    });
+  });
 }
 
 static void move_one(float h, const Body<3>& body, Motion<3>& motion) {

@@ -165,8 +165,11 @@ void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
 /// Counts the ticks at rest. Whether a body has rested for long enough to fall asleep.
 template <int D>
 static bool rests_long(const StepContext<D>& context, Body<D>& body) {
-  const float speed = length(body.velocity) + body.extent * length(body.spin);
-  const bool rested = body.asleep == 0 && speed < context.tuning.sleep_speed;
+  const float least = context.tuning.sleep_speed;
+  // What flies is far above it, and needs no root to be seen.
+  const bool flies = dot(body.velocity, body.velocity) > 2.0f * (least * least);
+  const bool rested =
+      !flies && body.asleep == 0 && length(body.velocity) + body.extent * length(body.spin) < least;
   body.rest_ticks = rested ? body.rest_ticks + 1 : 0;  // Who has just woken starts anew.
   body.asleep = 0;
   return static_cast<float>(body.rest_ticks) >= context.tuning.sleep_s / context.tick_s;

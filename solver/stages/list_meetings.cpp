@@ -121,9 +121,9 @@ static std::uint64_t who_can_pass(const StepContext<D>& context, const WorldStat
   return at_width(widest_lanes(context.lanes), [&]<int W>() {
     const Body<D>* bodies = state.bodies.data();
     const Motion<D>* motions = scratch.motions.data();
-    constexpr int kFew = kFewLanes<W>;
-    return pairs.count > kFew ? BodyKernels<W>::can_pass(context.tick_s, bodies, motions, pairs)
-                              : BodyKernels<kFew>::can_pass(context.tick_s, bodies, motions, pairs);
+    return in_lanes_that_hold<W>(pairs.count, [&]<int V>() {
+      return BodyKernels<V>::can_pass(context.tick_s, bodies, motions, pairs);
+    });
   });
 }
 

@@ -27,16 +27,6 @@ static void find_boxes(const StepContext<3>& context, const WorldState<3>& state
   for (int i = 0; i < moving.count; ++i) find_box(context, state, moving.shapes[i], cache);
 }
 
-/// Those that have few vertices, W at a time.
-template <int W>
-static void find_boxes_in_lanes(const FlyingShape* flying, const MovingShapes& few,
-                                const Shape<2>* of, Bounds<2>* boxes) {
-  const int wide = count_for_lanes<W>(few.count);
-  BodyKernels<W>::find_boxes(flying, few.shapes, wide, of, boxes);
-  BodyKernels<kFewLanes<W>>::find_boxes(flying + wide, few.shapes + wide, few.count - wide, of,
-                                        boxes);
-}
-
 static void find_boxes(const StepContext<2>& context, const WorldState<2>& state,
                        const MovingShapes& moving, PairCache<2>& cache) {
   FlyingShape flying[MovingShapes::kMax];
@@ -57,8 +47,11 @@ static void find_boxes(const StepContext<2>& context, const WorldState<2>& state
   }
   const Shape<2>* shapes = state.shapes.data();
   Bounds<2>* boxes = cache.boxes.data();
-  at_width(widest_lanes(context.lanes),
-           [&]<int W>() { find_boxes_in_lanes<W>(flying, few, shapes, boxes); });
+  at_width(widest_lanes(context.lanes), [&]<int W>() {
+    in_lanes<W>(0, few.count, [&]<int V>(int begin, int end) {
+      BodyKernels<V>::find_boxes(flying + begin, few.shapes + begin, end - begin, shapes, boxes);
+    });
+  });
 }
 
 /// Moves the boxes of these shapes, and lists which left their fat ones. None is left in `moving`.
@@ -118,11 +111,14 @@ static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state
     const bool moves = body.kind != BodyKind::kFree && body.kind != BodyKind::kStatic;
     const std::uint8_t active = moves && is_active(body) ? 1 : 0;
     const std::uint8_t has_mass = moves && body.inverse_mass > 0.0f ? 1 : 0;
-    asleep_before += bodies.has_mass[slot] & ~bodies.active[slot];
-    asleep += has_mass & ~active;
-    changes += bodies.active[slot] ^ active;
-    bodies.active[slot] = active;
-    bodies.has_mass[slot] = has_mass;
+    // Who takes part as before changes no number.
+    if ((active & bodies.active[slot]) == 0 || has_mass != bodies.has_mass[slot]) {
+      asleep_before += bodies.has_mass[slot] & ~bodies.active[slot];
+      asleep += has_mass & ~active;
+      changes += bodies.active[slot] ^ active;
+      bodies.active[slot] = active;
+      bodies.has_mass[slot] = has_mass;
+    }
     if (!moves || body.first_shape == kNone) continue;
     if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
     for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {

@@ -6,8 +6,10 @@ namespace cycloid::solver {
 
 /// What damping c [1/s] leaves in a substep: 1 / (1 + h c), which is implicit, so stable for every
 /// h. @pre the body has mass.
+/// Without damping that is 1. @pre the factors are 1, or of the same body.
 template <int D>
 static void dampen(float h, const Body<D>& body, Acceleration<D>& of) {
+  if (body.linear_damping == 0.0f && body.angular_damping == 0.0f) return;
   for (int i = 0; i < D; ++i) of.factor[i] = 1.0f / (1.0f + h * body.linear_damping);
   for (int i = 0; i < Dim<D>::kSpin; ++i)
     of.factor[D + i] = 1.0f / (1.0f + h * body.angular_damping);
