@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
+#include <iterator>
 #include <memory>
 #include <numeric>
 
@@ -26,27 +27,41 @@ constexpr int kEnd_ticks = 300;
 constexpr int kEvery_ticks = 3;
 
 /// An engine, and whether it is ours by Soft Step.
+template <int D>
 struct Contestant {
-  peers::EngineKind<2> kind;
+  peers::EngineKind<D> kind;
   bool soft_step = false;
 };
 
-std::vector<Contestant> contestants() {
-  std::vector<Contestant> all;
-  for (const peers::EngineKind<2>& kind : peers::engines<2>()) {
+template <int D>
+std::vector<Contestant<D>> contestants() {
+  std::vector<Contestant<D>> all;
+  for (const peers::EngineKind<D>& kind : peers::engines<D>()) {
     all.push_back({kind});
     if (all.size() == 1) all.push_back({kind, true});
   }
   return all;
 }
 
-scenes::Scene scene_of_start(int start, int starts) {
+scenes::Scene heap_of_start(int start, int starts) {
   const int sizes = std::min(starts, kSizes);
   const int size =
       kBodiesMin + (kBodiesMax - kBodiesMin) * (start % sizes) / std::max(1, sizes - 1);
   scenes::Scene scene = worlds::heap(size);
-  scene.tuning.sleep_s = 0.0f;
   trials::perturb(scene, {1, static_cast<std::uint32_t>(start / sizes)});
+  return scene;
+}
+
+scenes::Scene pit_of_start(int start) {
+  scenes::Scene scene = worlds::make_scene(*worlds::find_bench_world("ball-pit-3d"));
+  trials::perturb(scene, {1, static_cast<std::uint32_t>(start)});
+  return scene;
+}
+
+template <int D>
+scenes::Scene scene_of_start(int start, int starts) {
+  scenes::Scene scene = D == 2 ? heap_of_start(start, starts) : pit_of_start(start);
+  scene.tuning.sleep_s = 0.0f;
   return scene;
 }
 
@@ -64,46 +79,51 @@ class RootMeanSquare {
   std::uint64_t count_ = 0;
 };
 
-bool is_finite(const solver::Pose<2>& pose) {
-  return std::isfinite(pose.position[0]) && std::isfinite(pose.position[1]) &&
-         std::isfinite(pose.rotation[0]) && std::isfinite(pose.rotation[1]);
+template <int D>
+bool is_finite(const solver::Pose<D>& pose) {
+  const auto finite = [](float value) { return std::isfinite(value); };
+  return std::all_of(std::begin(pose.position.v), std::end(pose.position.v), finite) &&
+         std::all_of(std::begin(pose.rotation.v), std::end(pose.rotation.v), finite);
 }
 
-void expect_finite(const peers::Engine<2>& engine, std::size_t bodies, const char* name) {
+template <int D>
+void expect_finite(const peers::Engine<D>& engine, std::size_t bodies, const char* name) {
   for (std::uint32_t body = 0; body < bodies; ++body) {
-    if (is_finite(engine.pose(body))) continue;
+    if (is_finite<D>(engine.pose(body))) continue;
     std::fprintf(stderr, "cycloid_bench: --heaps: %s has lost body %u\n", name, body);
     std::exit(1);
   }
 }
 
-std::unique_ptr<scenes::Built<2>> built_or_exit(const scenes::Scene& scene) {
+template <int D>
+std::unique_ptr<scenes::Built<D>> built_or_exit(const scenes::Scene& scene) {
   std::vector<scenes::Mistake> mistakes;
-  auto built = scenes::build<2>(scene, mistakes);
+  auto built = scenes::build<D>(scene, mistakes);
   if (built != nullptr) return built;
   std::fprintf(stderr, "cycloid_bench: --heaps: %s: %s\n", mistakes[0].path.c_str(),
                mistakes[0].reason.c_str());
   std::exit(1);
 }
 
-void drop(scenes::Scene scene, const Contestant& contestant, HeapOverlaps& overlaps) {
+template <int D>
+void drop(scenes::Scene scene, const Contestant<D>& contestant, HeapOverlaps& overlaps) {
   if (contestant.soft_step) scene.tuning.contact_block = solver::ContactBlockRows::kNone;
-  const auto built = built_or_exit(scene);
+  const auto built = built_or_exit<D>(scene);
   std::string why;
   const auto engine = contestant.kind.make({scene, *built, {}}, why);
   if (engine == nullptr) {
     std::fprintf(stderr, "cycloid_bench: --heaps: %s\n", why.c_str());
     std::exit(1);
   }
-  const solver::WorldState<2>& state = built->world.state();
+  const solver::WorldState<D>& state = built->world.state();
   RootMeanSquare landing;
   RootMeanSquare resting;
   for (int tick = 1; tick <= kEnd_ticks; ++tick) {
     engine->step({});
     if (tick < kLandingFrom_ticks || tick % kEvery_ticks != 0) continue;
-    expect_finite(*engine, state.bodies.size(), contestant.kind.name);
+    expect_finite<D>(*engine, state.bodies.size(), contestant.kind.name);
     const auto pose_of = [&](std::uint32_t body) { return engine->pose(body); };
-    for (const float depth_m : peers::overlaps_of<2>(state, pose_of))
+    for (const float depth_m : peers::overlaps_of<D>(state, pose_of))
       (tick < kRestFrom_ticks ? landing : resting).add(1.0e3 * double{depth_m});
   }
   overlaps.landing_mm.push_back(landing.value());
@@ -136,27 +156,32 @@ std::string difference(const std::vector<double>& values, const std::vector<doub
 
 }  // namespace
 
+template <int D>
 std::vector<HeapOverlaps> measure_heaps(int starts) {
-  const std::vector<Contestant> all = contestants();
+  const std::vector<Contestant<D>> all = contestants<D>();
   std::vector<HeapOverlaps> engines;
-  for (const Contestant& contestant : all) {
+  for (const Contestant<D>& contestant : all) {
     const std::string name = contestant.kind.name;
     engines.push_back({contestant.soft_step ? name + ", Soft Step" : name, {}, {}});
   }
   for (int start = 0; start < starts; ++start) {
-    const scenes::Scene scene = scene_of_start(start, starts);
-    for (std::size_t i = 0; i < all.size(); ++i) drop(scene, all[i], engines[i]);
+    const scenes::Scene scene = scene_of_start<D>(start, starts);
+    for (std::size_t i = 0; i < all.size(); ++i) drop<D>(scene, all[i], engines[i]);
     if ((start + 1) % 10 == 0 || start + 1 == starts)
-      std::fprintf(stderr, "%d of %d heaps\n", start + 1, starts);
+      std::fprintf(stderr, "%d of %d starts in %s\n", start + 1, starts,
+                   D == 2 ? "the plane" : "space");
   }
   return engines;
 }
 
-std::string heaps_markdown(const std::vector<HeapOverlaps>& engines) {
-  std::string table =
-      std::to_string(engines[0].landing_mm.size()) +
-      " heaps of 40 to 400 bodies; root of the mean square of all overlaps, mm.\n\n"
-      "| engine | landing | beside ours | at rest | beside ours |\n|---|---|---|---|---|\n";
+template std::vector<HeapOverlaps> measure_heaps<2>(int starts);
+template std::vector<HeapOverlaps> measure_heaps<3>(int starts);
+
+std::string heaps_markdown(const std::vector<HeapOverlaps>& engines, const std::string& what) {
+  std::string table = std::to_string(engines[0].landing_mm.size()) + " " + what +
+                      "; root of the mean square of all overlaps, mm.\n\n"
+                      "| engine | landing | beside ours | at rest | beside ours |\n"
+                      "|---|---|---|---|---|\n";
   for (const HeapOverlaps& engine : engines) {
     const bool is_ours = &engine == &engines[0];
     const auto apart = [&](const std::vector<double>& values, const std::vector<double>& first) {

@@ -16,14 +16,17 @@ struct HeapOverlaps {
   std::vector<double> resting_mm;  ///< The same of the two seconds behind it.
 };
 
-/// Drops heaps of 40 to 400 bodies, that many of sizes as evenly apart as can be, in every engine:
-/// ours by default and by Soft Step, and those peers that hold planar scenes. From the second heap
-/// of a size on bodies begin with speeds of their own of up to 1 mm/s (trials/perturb.hpp).
+/// Drops bodies in every engine that holds scenes of that dimension: ours by default and by Soft
+/// Step, and the peers. In the plane heaps of 40 to 400 bodies, that many of sizes as evenly apart
+/// as can be; in space the 150 balls of `ball-pit-3d`. From the second start of a scene on bodies
+/// begin with speeds of their own of up to 1 mm/s (trials/perturb.hpp).
 /// Exits with a message where an engine loses a body.
+template <int D>
 std::vector<HeapOverlaps> measure_heaps(int starts);
 
 /// A row for each engine: the means over all starts, and of the differences from the first engine
-/// start by start, with their standard errors. @pre two starts or more.
-std::string heaps_markdown(const std::vector<HeapOverlaps>& engines);
+/// start by start, with their standard errors. @param what  "heaps of 40 to 400 bodies".
+/// @pre two starts or more.
+std::string heaps_markdown(const std::vector<HeapOverlaps>& engines, const std::string& what);
 
 }  // namespace cycloid::bench

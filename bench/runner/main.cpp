@@ -119,7 +119,11 @@ int write_reports(const Command& command, const std::vector<bench::SceneResult>&
 
 /// How far heaps overlap in each engine, instead of how long they take.
 int run_heaps(const Command& command) {
-  const std::string table = bench::heaps_markdown(bench::measure_heaps(command.heaps));
+  const std::string table =
+      bench::heaps_markdown(bench::measure_heaps<2>(command.heaps), "heaps of 40 to 400 bodies") +
+      "\n" +
+      bench::heaps_markdown(bench::measure_heaps<3>(command.heaps),
+                            "pits of 150 balls in space (`ball-pit-3d`)");
   std::printf("%s", table.c_str());
   if (command.markdown.empty()) return 0;
   return report(bench::replace_section(command.markdown, "heaps", table));
