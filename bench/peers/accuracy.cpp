@@ -103,17 +103,25 @@ static float largest_of(const std::vector<float>& sizes) {
 }
 
 template <int D>
-Accuracy measure_accuracy(const WorldState<D>& state, const Poses<D>& poses) {
-  Accuracy accuracy;
+bool are_finite(const WorldState<D>& state, const Poses<D>& poses) {
   for (std::uint32_t i = 0; i < state.bodies.size(); ++i)
     for (const float value : poses(i).position.v)
-      if (!std::isfinite(value)) accuracy.finite = false;
+      if (!std::isfinite(value)) return false;
+  return true;
+}
+
+template <int D>
+Accuracy measure_accuracy(const WorldState<D>& state, const Poses<D>& poses) {
+  Accuracy accuracy;
+  accuracy.finite = are_finite(state, poses);
   if (!accuracy.finite) return accuracy;
   accuracy.overlap_m = largest_of(overlaps_of(state, poses));
   accuracy.gap_m = largest_of(gaps_of(state, poses));
   return accuracy;
 }
 
+template bool are_finite(const WorldState<2>&, const Poses<2>&);
+template bool are_finite(const WorldState<3>&, const Poses<3>&);
 template Accuracy measure_accuracy(const WorldState<2>&, const Poses<2>&);
 template Accuracy measure_accuracy(const WorldState<3>&, const Poses<3>&);
 template std::vector<float> overlaps_of(const WorldState<2>&, const Poses<2>&);

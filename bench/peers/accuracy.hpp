@@ -25,6 +25,10 @@ struct Accuracy {
 template <int D>
 Accuracy measure_accuracy(const solver::WorldState<D>& state, const Poses<D>& poses);
 
+/// Whether every body of the state is somewhere.
+template <int D>
+bool are_finite(const solver::WorldState<D>& state, const Poses<D>& poses);
+
 /// The depth [m] of every pair of shapes that may collide and overlaps, in no particular order.
 /// @pre every pose is finite; otherwise as `measure_accuracy`.
 template <int D>

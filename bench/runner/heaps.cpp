@@ -5,7 +5,6 @@
 #include <cstdint>
 #include <cstdio>
 #include <cstdlib>
-#include <iterator>
 #include <memory>
 #include <numeric>
 
@@ -79,20 +78,9 @@ class RootMeanSquare {
   std::uint64_t count_ = 0;
 };
 
-template <int D>
-bool is_finite(const solver::Pose<D>& pose) {
-  const auto finite = [](float value) { return std::isfinite(value); };
-  return std::all_of(std::begin(pose.position.v), std::end(pose.position.v), finite) &&
-         std::all_of(std::begin(pose.rotation.v), std::end(pose.rotation.v), finite);
-}
-
-template <int D>
-void expect_finite(const peers::Engine<D>& engine, std::size_t bodies, const char* name) {
-  for (std::uint32_t body = 0; body < bodies; ++body) {
-    if (is_finite<D>(engine.pose(body))) continue;
-    std::fprintf(stderr, "cycloid_bench: --heaps: %s has lost body %u\n", name, body);
-    std::exit(1);
-  }
+[[noreturn]] void give_up(const std::string& why) {
+  std::fprintf(stderr, "cycloid_bench: --heaps: %s\n", why.c_str());
+  std::exit(1);
 }
 
 template <int D>
@@ -100,9 +88,7 @@ std::unique_ptr<scenes::Built<D>> built_or_exit(const scenes::Scene& scene) {
   std::vector<scenes::Mistake> mistakes;
   auto built = scenes::build<D>(scene, mistakes);
   if (built != nullptr) return built;
-  std::fprintf(stderr, "cycloid_bench: --heaps: %s: %s\n", mistakes[0].path.c_str(),
-               mistakes[0].reason.c_str());
-  std::exit(1);
+  give_up(mistakes[0].path + ": " + mistakes[0].reason);
 }
 
 template <int D>
@@ -111,18 +97,16 @@ void drop(scenes::Scene scene, const Contestant<D>& contestant, HeapOverlaps& ov
   const auto built = built_or_exit<D>(scene);
   std::string why;
   const auto engine = contestant.kind.make({scene, *built, {}}, why);
-  if (engine == nullptr) {
-    std::fprintf(stderr, "cycloid_bench: --heaps: %s\n", why.c_str());
-    std::exit(1);
-  }
+  if (engine == nullptr) give_up(why);
   const solver::WorldState<D>& state = built->world.state();
   RootMeanSquare landing;
   RootMeanSquare resting;
   for (int tick = 1; tick <= kEnd_ticks; ++tick) {
     engine->step({});
     if (tick < kLandingFrom_ticks || tick % kEvery_ticks != 0) continue;
-    expect_finite<D>(*engine, state.bodies.size(), contestant.kind.name);
-    const auto pose_of = [&](std::uint32_t body) { return engine->pose(body); };
+    const peers::Poses<D> pose_of = [&](std::uint32_t body) { return engine->pose(body); };
+    if (!peers::are_finite<D>(state, pose_of))
+      give_up(contestant.kind.name + std::string(" has lost a body"));
     for (const float depth_m : peers::overlaps_of<D>(state, pose_of))
       (tick < kRestFrom_ticks ? landing : resting).add(1.0e3 * double{depth_m});
   }

@@ -2,6 +2,7 @@
 
 #include "solver/bodies/body_kernels.hpp"
 #include "solver/lane_widths.hpp"
+#include "solver/stages/met_bodies.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -13,20 +14,6 @@ static bool may_part(const StepContext<D>& context, const StepScratch<D>& scratc
   const Stabilisation by = context.tuning.stabilisation;
   if (by == Stabilisation::kXpbd || by == Stabilisation::kSplitImpulse) return false;
   return scratch.kept->trace == nullptr && scratch.lots.all.empty();
-}
-
-/// Names the bodies of each live contact and joint, with mass or without.
-template <int D, class Name>
-static void name_met(const WorldState<D>& state, const StepScratch<D>& scratch, Name&& name) {
-  for (const LiveContact<D>& live : scratch.live) {
-    name(live.body_a);
-    name(live.body_b);
-  }
-  for (const LiveJoint& live : scratch.live_joints) {
-    const Joint<D>& joint = state.joints[static_cast<std::size_t>(live.slot)];
-    name(joint.body_a);
-    name(joint.body_b);
-  }
 }
 
 /// Lists those that no contact or joint reads or writes in this tick behind all others, in a world
@@ -43,12 +30,12 @@ void part_flying(const StepContext<D>& context, const WorldState<D>& state,
   if (2 * pairs > awake.size() || !may_part(context, scratch)) return;
   std::vector<std::uint8_t>& is_met = scratch.is_met;
   if (is_met.size() < state.bodies.size()) is_met.resize(state.bodies.size(), 0);
-  name_met(state, scratch, [&](std::uint32_t slot) { is_met[slot] = 1; });
+  for_each_met_body(state, scratch, [&](std::uint32_t slot) { is_met[slot] = 1; });
   std::vector<std::uint32_t>& moving = scratch.moving_bodies;
   std::size_t met = 0;
   std::size_t last = awake.size();
   for (const std::uint32_t slot : awake) moving[is_met[slot] != 0 ? met++ : --last] = slot;
-  name_met(state, scratch, [&](std::uint32_t slot) { is_met[slot] = 0; });
+  for_each_met_body(state, scratch, [&](std::uint32_t slot) { is_met[slot] = 0; });
   scratch.flying = static_cast<int>(awake.size() - met);
 }
 

@@ -43,8 +43,7 @@ static void move_by_pseudo_velocities(float h, Range range, StepScratch<D>& scra
   }
 }
 
-template <int D>
-static std::span<const std::uint32_t> slots_of(Range range, const StepScratch<D>& scratch) {
+static std::span<const std::uint32_t> slots_of(Range range, const StepScratch<3>& scratch) {
   return std::span(scratch.moving_bodies)
       .subspan(static_cast<std::size_t>(range.begin),
                static_cast<std::size_t>(range.end - range.begin));

@@ -1,5 +1,6 @@
 #include <algorithm>
 
+#include "solver/stages/met_bodies.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -44,15 +45,7 @@ static void list_met(const WorldState<D>& state, StepScratch<D>& scratch) {
   scratch.met_many = 4 * (scratch.awake_bodies.size() + 2 * pairs) > count;
   if (scratch.met_many) return;
   met.assign(scratch.awake_bodies.begin(), scratch.awake_bodies.end());
-  for (const LiveContact<D>& live : scratch.live) {
-    met.push_back(live.body_a);
-    met.push_back(live.body_b);
-  }
-  for (const LiveJoint& live : scratch.live_joints) {
-    const Joint<D>& joint = state.joints[static_cast<std::size_t>(live.slot)];
-    met.push_back(joint.body_a);
-    met.push_back(joint.body_b);
-  }
+  for_each_met_body(state, scratch, [&](std::uint32_t slot) { met.push_back(slot); });
   met.push_back(static_cast<std::uint32_t>(count));
 }
 
