@@ -248,10 +248,10 @@ enum class ContactBlockRows : std::uint32_t {
   kNormals,  ///< The normals of a manifold: every case of the linear complementarity problem.
   kNormalFriction,  ///< Normal and tangents of a point: separate, stick or slide.
   kIsland,  ///< All that push and stick in an island, with its rigid joints; only with kSoft.
-  /// The same where it is needed and costs little: of thin islands (stacks, chains, bridges,
-  /// arches) whose load would let a soft contact or joint give way. Elsewhere, and where the method
-  /// is not kSoft or joints are kDirect, it is kNone. A tick in which such islands have all that
-  /// moves takes fewer substeps (stages/choose_substeps.cpp).
+  /// The same where it is needed and costs little: thin islands (stacks, chains, bridges, arches)
+  /// whose load a soft row would give way to, that rest or have joints; those that move are swept
+  /// as rigid rows (stages/find_landing.cpp). Else, and without kSoft or with kDirect, kNone. Where
+  /// such islands have all that moves, a tick takes fewer substeps (stages/choose_substeps.cpp).
   kLoadedIsland,
 };
 

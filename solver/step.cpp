@@ -127,7 +127,7 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   Lot whole = lay_out_contacts<D, W>(workers, scratch);
   const bool divided = !scratch.lots.all.empty();
   if (!divided) prepare_contacts<D, W>(context, state, whole, workers, scratch);
-  prepare_islands<D, W>(context, state, workers, scratch);
+  prepare_islands<D, W>(context, workers, scratch);
   const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
   scratch.substeps = paced.tuning.substeps;
   prepare_pins(paced, state, workers, scratch);

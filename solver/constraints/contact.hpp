@@ -36,8 +36,9 @@ struct NormalRow {
   Lanes<W> impulse_scale;
 };
 
-/// Softness of overlapping points, in each lane: of pairs that both move, or of one that does; what
-/// an island has taken is rigid, and moved out of overlap by the island.
+/// Softness of overlapping points, in each lane: of pairs that both move, or of one that does. What
+/// an island has taken is rigid, and moved out of overlap by the island; what lands is rigid, and
+/// moved out of overlap as springs are.
 template <int W>
 struct SoftnessLanes {
   Lanes<W> bias_rate;
@@ -58,10 +59,10 @@ template <int D, int W>
             select(of_both, soft.mass_scale, L(one.mass_scale)),
             select(of_both, soft.impulse_scale, L(one.impulse_scale))};
   }
-  if (block.taken != 0) {
-    const auto rigid = mask_of<W>(block.taken);
-    soft = {select(rigid, L(0.0f), soft.bias_rate), select(rigid, L(1.0f), soft.mass_scale),
-            select(rigid, L(0.0f), soft.impulse_scale)};
+  if (const LaneBits rigid_lanes = block.taken | block.landing; rigid_lanes != 0) {
+    const auto rigid = mask_of<W>(rigid_lanes);
+    soft = {select(mask_of<W>(block.taken), L(0.0f), soft.bias_rate),
+            select(rigid, L(1.0f), soft.mass_scale), select(rigid, L(0.0f), soft.impulse_scale)};
   }
   return soft;
 }

@@ -80,6 +80,7 @@ struct ContactBlock : FrictionDirections<D, Lanes<W>> {
   LaneBits stirs;    ///< or not quite at rest.
   LaneBits taken;    ///< Of islands: lanes in one that is solved, for the whole tick,
   LaneBits left;     ///< and lanes in none.
+  LaneBits landing;  ///< Of islands: lanes in one that lands (find_landing), and is not taken.
   LaneBits settled;  ///< Of islands: lanes that biased sweeps pass by.
   std::uint32_t placed;       ///< Which poses gaps and slides are of (Lot::poses); 0: none.
   std::uint32_t point_count;  ///< The most points of any lane.

@@ -10,8 +10,9 @@ struct Effort {
   int rounds;  ///< Times that it is tried while its step falls short, from where the last one led.
 };
 static constexpr Effort kThorough{4, 3};
-/// Where soft sweeps can go on from what it leaves. A heap that comes down, whose contacts come and
-/// go, lies no deeper for more; joints, which sweeps do not close, would part.
+/// Where soft sweeps can go on from what it leaves: they have a say then in which contacts slide.
+/// An arch that is settled here sinks by four times as much; joints, which sweeps do not close,
+/// would part.
 static constexpr Effort kBrief{1, 1};
 /// A step this near to the whole is one.
 static constexpr Wide kWholeStep = 0.999;

@@ -149,7 +149,8 @@ class IslandSolver {
     bool taken;                  ///< Solved at once in this tick; else the sweeps have it.
     bool weighed;                ///< They have it, but a guess that has gone wrong is weakened.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
-    bool changes;   ///< One of its contacts began or ended to touch in this tick.
+    bool stands;    ///< Of contacts alone: it touches ground, and
+    bool lands;     ///< it is not at rest (find_landing).
     bool stirred;   ///< The substep before had to solve it.
     bool calm;      ///< Of contacts alone, and the substep began with all its bodies slow,
     bool sways;     ///< but one of them not at rest.
@@ -197,6 +198,7 @@ class IslandSolver {
   std::vector<VelocityQuads<D>> before;    ///< By node: that the substep began with.
   ByIsland slots_of;                       ///< By island, if is_sorted.
   ByIsland held_of;                        ///< Places in `held`, the same.
+  std::vector<Vec<D>> mean_velocity;       ///< By island, of its bodies, m/s; find_landing.
   bool is_sorted = false;                  ///< Since islands were last found.
   std::vector<Motion<D>> guess;       ///< By slot: what the warm start has added (weigh_guesses).
   std::vector<std::uint32_t> loaded;  ///< Slots of bodies whose load calls for this solver.

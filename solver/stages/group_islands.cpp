@@ -88,7 +88,10 @@ static bool may_be_weighed(const typename IslandSolver<D>::Island& island) {
 /// @pre find_islands and count_pairs.
 template <int D>
 static bool want_islands(IslandSolver<D>& solver) {
-  for (auto& island : solver.islands) island.wanted = !solver.only_thin;
+  for (auto& island : solver.islands) {
+    island.wanted = !solver.only_thin;
+    island.stands = island.lands = false;
+  }
   if (!solver.only_thin) return true;
   bool any = false;
   int last = -1;
@@ -214,7 +217,7 @@ static bool begin_islands(StepScratch<D>& scratch) {
     island.taken = island.wanted && island.solvable;
     island.weighed = island.wanted && !island.solvable && may_be_weighed<D>(island);
     island.products_left = std::int64_t{kProductsPerPairAndTick} * island.pairs;
-    island.swept = island.changes = island.stirred = island.corrects = false;
+    island.swept = island.stirred = island.corrects = false;
     if (!island.taken && !island.weighed) continue;
     find_heaviest(scratch, island);
     if (island.joint_count > 0) scratch.islands_solved.guess.resize(scratch.motions.size());
@@ -237,8 +240,8 @@ static void begin_grouping(const Tuning& tuning, IslandSolver<D>& solver) {
 /// once. What holds the same as in the tick before is sorted as it was: a cache, which changes no
 /// bit.
 ///
-/// Reads contact blocks, joint rows, masses and which bodies are loaded; writes the island solver.
-/// Serial, in the order of the colouring and of the slots.
+/// Reads contact blocks, joint rows, masses, motions and which bodies are loaded; writes the island
+/// solver, and which lanes of blocks land. Serial, in the order of the colouring and of the slots.
 template <int D, int W>
 void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
@@ -249,6 +252,7 @@ void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<
     solver.is_sorted = false;
   }
   solver.acts = want_islands(solver);
+  if (solver.acts && solver.only_thin) solver.acts = find_landing<D, W>(scratch);
   if (!solver.acts) return;
   plan_wanted(scratch);
   solver.acts = begin_islands(scratch);

@@ -47,25 +47,6 @@ static void find_swept_joints(StepScratch<D>& scratch) {
   }
 }
 
-/// Finds the islands in which contacts come or go, as all do where a heap lands. Of a contact that
-/// has ended, what it held apart may be of two.
-template <int D>
-static void find_changes(const WorldState<D>& state, StepScratch<D>& scratch) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  const auto change = [&](std::uint32_t shape) {
-    const int at = solver.island_of[state.shapes[shape].body];
-    if (at >= 0) solver.islands[static_cast<std::size_t>(at)].changes = true;
-  };
-  for (const std::uint32_t began : scratch.began) {
-    change(scratch.contacts[began].shape_a);
-    change(scratch.contacts[began].shape_b);
-  }
-  for (const std::uint32_t ended : scratch.ended) {
-    change(state.contacts[ended].shape_a);
-    change(state.contacts[ended].shape_b);
-  }
-}
-
 /// Takes what islands hold from the soft sweeps, and says which of their contacts sweeps act on all
 /// the same, and which lanes are of no island.
 template <int D, int W>
@@ -96,11 +77,10 @@ static void take_held(const StepContext<D>& context, StepScratch<D>& scratch) {
 /// Sorts what touches or is jointed into islands, and takes what can be solved at once from the
 /// soft sweeps.
 ///
-/// Reads contact blocks, joint rows, masses and which contacts began or ended; writes the island
-/// solver, and which contacts and joint rows it takes. Serial.
+/// Reads contact blocks, joint rows, masses and motions; writes the island solver, and which
+/// contacts and joint rows it takes. Serial.
 template <int D, int W>
-void prepare_islands(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
-                     StepScratch<D>& scratch) {
+void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   solver.work = {};
   find_loaded<D, W>(context, workers, scratch);
@@ -109,7 +89,6 @@ void prepare_islands(const StepContext<D>& context, const WorldState<D>& state, 
   group_islands<D, W>(context, workers, scratch);
   if (!solver.acts) return;
   find_swept_joints(scratch);
-  find_changes(state, scratch);
   take_held<D, W>(context, scratch);
 }
 

@@ -76,25 +76,13 @@ static bool sweeps_contacts(const IslandSolver<D>& solver,
   return island.joint_count == 0 && solver.leaves_for_sweeps(island, kRest.misses);
 }
 
-/// Whether an island that is stirred is left to the sweeps in this substep: where it has cost too
-/// much in this tick, and where its contacts come and go. There one solve takes the blows of the
-/// tick, and each after it would look for what holds anew: without them a heap that lands costs a
-/// quarter less and overlaps by a sixtieth more (docs/stability.md). Where there are fewer
-/// substeps because all is solved, it is solved in each.
-template <int D>
-static bool is_left_to_sweeps(const StepContext<D>& context, const IslandSolver<D>& solver,
-                              const typename IslandSolver<D>::Island& island) {
-  if (island.products_left <= 0) return true;
-  return island.changes && !context.is_first && solver.is_shared(island) && !solver.has_all;
-}
-
-/// Solves one island from where the warm start has led, or leaves it to the sweeps.
+/// Solves one island from where the warm start has led, or leaves it to the sweeps where it has
+/// cost too much in this tick.
 template <int D, int W>
 static void solve_island(const StepContext<D>& context, StepScratch<D>& scratch,
                          typename IslandSolver<D>::Island& island) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  if (is_left_to_sweeps(context, solver, island))
-    return hand_over<D, W>(island, true, true, scratch);
+  if (island.products_left <= 0) return hand_over<D, W>(island, true, true, scratch);
   gather_island<D, W>(context, scratch, island);
   const IslandStep step{static_cast<Wide>(context.h),
                         static_cast<Wide>(context.tuning.push_speed_max)};

@@ -91,9 +91,20 @@ template <int D, int W>
 void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
 void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
+/// Leaves to the sweeps what is no load yet, but a blow: wanted islands of contacts alone whose
+/// bodies move beside one another, that come down on ground, or touch none. Their contacts are
+/// rigid: so they stop what comes down, and overlap leaves them as it does springs. Solved at once,
+/// a blow would stay in the impulses that the next substep starts from, and heaps of unequal masses
+/// would throw their lighter bodies about (docs/stability.md).
+///
+/// Reads islands, motions and blocks; writes which islands land, and so are not wanted, and which
+/// lanes of blocks. Serial, in the order of the slots and of the colouring. @returns whether any is
+/// still wanted.
+/// @pre islands are found, and blocks hold no landing lanes of another tick.
 template <int D, int W>
-void prepare_islands(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
-                     StepScratch<D>& scratch);
+bool find_landing(StepScratch<D>& scratch);
+template <int D, int W>
+void prepare_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
 StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D>& state,
                                StepScratch<D>& scratch);

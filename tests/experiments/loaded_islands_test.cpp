@@ -96,8 +96,9 @@ TEST(LoadedIslands, HoldWhatSoftSweepsLetFall) {
     const char* trial;
     double most;
   };
+  // 400 times the mass falls by 5 m on what stands on a line: of two contacts the slop stays.
   constexpr Claim kClaims[] = {{"trial-heavy-on-light-1000", 0.005}, {"trial-stack-30", 0.02},
-                               {"trial-400-on-thin-ground", 0.01},   {"trial-arch", 0.05},
+                               {"trial-400-on-thin-ground", 0.015},  {"trial-arch", 0.05},
                                {"trial-ball-and-chain", 0.005},      {"trial-bridge", 0.005},
                                {"trial-stretched-chain", 0.002}};
   for (const Claim& claim : kClaims) {
