@@ -12,6 +12,7 @@
 #include "bench/peers/engine.hpp"
 #include "bench/trials/perturb.hpp"
 #include "bench/worlds/bench_worlds.hpp"
+#include "scenes/generators/generators.hpp"
 
 namespace cycloid::bench {
 namespace {
@@ -57,9 +58,20 @@ scenes::Scene pit_of_start(int start) {
   return scene;
 }
 
+/// Makes bodies heavier, each as likely as not, by the same choice in each start of a scene.
+void make_unequal(float mass_ratio, scenes::Scene& scene) {
+  scenes::Random random{17};
+  for (scenes::SceneBody& body : scene.bodies) {
+    const bool is_heavy = random.between(0.0f, 1.0f) < 0.5f;
+    if (!is_heavy || body.kind != solver::BodyKind::kDynamic) continue;
+    for (scenes::SceneShape& shape : body.shapes) shape.density *= mass_ratio;
+  }
+}
+
 template <int D>
-scenes::Scene scene_of_start(int start, int starts) {
+scenes::Scene scene_of_start(int start, int starts, float mass_ratio) {
   scenes::Scene scene = D == 2 ? heap_of_start(start, starts) : pit_of_start(start);
+  make_unequal(mass_ratio, scene);
   scene.tuning.sleep_s = 0.0f;
   return scene;
 }
@@ -91,6 +103,16 @@ std::unique_ptr<scenes::Built<D>> built_or_exit(const scenes::Scene& scene) {
   give_up(mistakes[0].path + ": " + mistakes[0].reason);
 }
 
+/// The greatest speed of any body, m/s.
+template <int D>
+double fastest_of(const solver::WorldState<D>& state, const peers::Engine<D>& engine) {
+  double fastest = 0.0;
+  for (std::uint32_t body = 0; body < state.bodies.size(); ++body)
+    if (state.bodies[body].inverse_mass > 0.0f)
+      fastest = std::max(fastest, double{solver::length(engine.twist(body).velocity)});
+  return fastest;
+}
+
 template <int D>
 void drop(scenes::Scene scene, const Contestant<D>& contestant, HeapOverlaps& overlaps) {
   if (contestant.soft_step) scene.tuning.contact_block = solver::ContactBlockRows::kNone;
@@ -101,8 +123,10 @@ void drop(scenes::Scene scene, const Contestant<D>& contestant, HeapOverlaps& ov
   const solver::WorldState<D>& state = built->world.state();
   RootMeanSquare landing;
   RootMeanSquare resting;
+  double fastest_m_s = 0.0;
   for (int tick = 1; tick <= kEnd_ticks; ++tick) {
     engine->step({});
+    fastest_m_s = std::max(fastest_m_s, fastest_of(state, *engine));
     if (tick < kLandingFrom_ticks || tick % kEvery_ticks != 0) continue;
     const peers::Poses<D> pose_of = [&](std::uint32_t body) { return engine->pose(body); };
     if (!peers::are_finite<D>(state, pose_of))
@@ -112,19 +136,26 @@ void drop(scenes::Scene scene, const Contestant<D>& contestant, HeapOverlaps& ov
   }
   overlaps.landing_mm.push_back(landing.value());
   overlaps.resting_mm.push_back(resting.value());
+  overlaps.fastest_m_s.push_back(fastest_m_s);
 }
 
 double mean_of(const std::vector<double>& values) {
   return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
 }
 
-std::string cell(const std::vector<double>& values) {
+std::string cell(const char* format, double value) {
   char text[32];
-  std::snprintf(text, sizeof text, "%.2f", mean_of(values));
+  std::snprintf(text, sizeof text, format, value);
   return text;
 }
 
-/// "+0.10 +- 0.03": of the differences from what the first engine has at the same start.
+double median_of(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// "+0.100 +- 0.030": of the differences from what the first engine has at the same start.
 std::string difference(const std::vector<double>& values, const std::vector<double>& first) {
   std::vector<double> apart;
   for (std::size_t i = 0; i < values.size(); ++i) apart.push_back(values[i] - first[i]);
@@ -133,7 +164,7 @@ std::string difference(const std::vector<double>& values, const std::vector<doub
   for (const double value : apart) square += (value - mean) * (value - mean);
   const auto count = static_cast<double>(apart.size());
   char text[64];
-  std::snprintf(text, sizeof text, "%+.2f +- %.2f", mean,
+  std::snprintf(text, sizeof text, "%+.3f +- %.3f", mean,
                 std::sqrt(square / (count - 1.0) / count));
   return text;
 }
@@ -141,15 +172,15 @@ std::string difference(const std::vector<double>& values, const std::vector<doub
 }  // namespace
 
 template <int D>
-std::vector<HeapOverlaps> measure_heaps(int starts) {
+std::vector<HeapOverlaps> measure_heaps(int starts, float mass_ratio) {
   const std::vector<Contestant<D>> all = contestants<D>();
   std::vector<HeapOverlaps> engines;
   for (const Contestant<D>& contestant : all) {
     const std::string name = contestant.kind.name;
-    engines.push_back({contestant.soft_step ? name + ", Soft Step" : name, {}, {}});
+    engines.push_back({contestant.soft_step ? name + ", Soft Step" : name, {}, {}, {}});
   }
   for (int start = 0; start < starts; ++start) {
-    const scenes::Scene scene = scene_of_start<D>(start, starts);
+    const scenes::Scene scene = scene_of_start<D>(start, starts, mass_ratio);
     for (std::size_t i = 0; i < all.size(); ++i) drop<D>(scene, all[i], engines[i]);
     if ((start + 1) % 10 == 0 || start + 1 == starts)
       std::fprintf(stderr, "%d of %d starts in %s\n", start + 1, starts,
@@ -158,22 +189,28 @@ std::vector<HeapOverlaps> measure_heaps(int starts) {
   return engines;
 }
 
-template std::vector<HeapOverlaps> measure_heaps<2>(int starts);
-template std::vector<HeapOverlaps> measure_heaps<3>(int starts);
+template std::vector<HeapOverlaps> measure_heaps<2>(int starts, float mass_ratio);
+template std::vector<HeapOverlaps> measure_heaps<3>(int starts, float mass_ratio);
 
 std::string heaps_markdown(const std::vector<HeapOverlaps>& engines, const std::string& what) {
-  std::string table = std::to_string(engines[0].landing_mm.size()) + " " + what +
-                      "; root of the mean square of all overlaps, mm.\n\n"
-                      "| engine | landing | beside ours | at rest | beside ours |\n"
-                      "|---|---|---|---|---|\n";
+  std::string table =
+      std::to_string(engines[0].landing_mm.size()) + " " + what +
+      "; root of the mean square of all overlaps, mm, and the speed of "
+      "the fastest, m/s.\n\n"
+      "| engine | landing | beside ours | at rest | beside ours | fastest, median | "
+      "the greatest |\n"
+      "|---|---|---|---|---|---|---|\n";
   for (const HeapOverlaps& engine : engines) {
     const bool is_ours = &engine == &engines[0];
     const auto apart = [&](const std::vector<double>& values, const std::vector<double>& first) {
       return is_ours ? std::string() : difference(values, first);
     };
-    table += "| " + engine.engine + " | " + cell(engine.landing_mm) + " | " +
-             apart(engine.landing_mm, engines[0].landing_mm) + " | " + cell(engine.resting_mm) +
-             " | " + apart(engine.resting_mm, engines[0].resting_mm) + " |\n";
+    const double fastest = *std::max_element(engine.fastest_m_s.begin(), engine.fastest_m_s.end());
+    table += "| " + engine.engine + " | " + cell("%.3f", mean_of(engine.landing_mm)) + " | " +
+             apart(engine.landing_mm, engines[0].landing_mm) + " | " +
+             cell("%.3f", mean_of(engine.resting_mm)) + " | " +
+             apart(engine.resting_mm, engines[0].resting_mm) + " | " +
+             cell("%.0f", median_of(engine.fastest_m_s)) + " | " + cell("%.0f", fastest) + " |\n";
   }
   return table;
 }

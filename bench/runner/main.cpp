@@ -122,6 +122,9 @@ int run_heaps(const Command& command) {
   const std::string table =
       bench::heaps_markdown(bench::measure_heaps<2>(command.heaps), "heaps of 40 to 400 bodies") +
       "\n" +
+      bench::heaps_markdown(bench::measure_heaps<2>(command.heaps, 100.0f),
+                            "of the same heaps, half of whose bodies are 100 times as heavy") +
+      "\n" +
       bench::heaps_markdown(bench::measure_heaps<3>(command.heaps),
                             "pits of 150 balls in space (`ball-pit-3d`)");
   std::printf("%s", table.c_str());
