@@ -250,8 +250,9 @@ enum class ContactBlockRows : std::uint32_t {
   kIsland,  ///< All that push and stick in an island, with its rigid joints; only with kSoft.
   /// The same where it is needed and costs little: thin islands (stacks, chains, bridges, arches)
   /// whose load a soft row would give way to, that rest or have joints; those that move are swept
-  /// as rigid rows (stages/find_landing.cpp). Else, and without kSoft or with kDirect, kNone. Where
-  /// such islands have all that moves, a tick takes fewer substeps (stages/choose_substeps.cpp).
+  /// as rigid rows (stages/find_landing.cpp). Where such islands have all that moves, a tick takes
+  /// fewer substeps (stages/choose_substeps.cpp). Springs of contacts are twice as stiff until they
+  /// have given way by the slop (make_step_context). Without kSoft or with kDirect, kNone.
   kLoadedIsland,
 };
 
@@ -334,12 +335,16 @@ struct Tuning {
   }
 };
 
-/// Whether islands may be solved at once, all of them or those that are loaded.
-inline bool solves_islands(const Tuning& tuning) {
-  if (tuning.contact_block == ContactBlockRows::kIsland) return true;
+/// Whether loaded islands are solved at once, and what is swept is as ContactBlockRows says of it.
+inline bool solves_loaded_islands(const Tuning& tuning) {
   return tuning.contact_block == ContactBlockRows::kLoadedIsland &&
          tuning.stabilisation == Stabilisation::kSoft &&
          tuning.joint_solver == JointSolver::kIterated;
+}
+
+/// Whether islands may be solved at once, all of them or those that are loaded.
+inline bool solves_islands(const Tuning& tuning) {
+  return tuning.contact_block == ContactBlockRows::kIsland || solves_loaded_islands(tuning);
 }
 
 /// Stated capacities. What would exceed one is refused with the name of the field.

@@ -19,6 +19,7 @@ struct StepContext {
   Softness pseudo;                 ///< Of pseudo-velocity sweeps, which are rigid and biased.
   Softness motor;                  ///< Of position motors without a frequency of their own.
   float slop;                      ///< m of overlap that velocity sweeps leave alone.
+  float stiff_overlap;             ///< m beyond it that count twice: normal_row.
   std::uint32_t lot_contacts = 0;  ///< Of a lot that is asked for; 0: what suits. Changes no bit.
   int lanes = 0;                   ///< Width that is asked for; 0: what suits. Changes no bit.
   bool odd = false;      ///< Of the number of the tick and the substep in sum: see point_in_turn.
@@ -29,6 +30,10 @@ struct StepContext {
 /// of it and joints to a quarter (Catto, Solver2D).
 /// What rests on a spring needs no slop to stay in touch, its load overlaps it; a slop would come
 /// on top of that in every contact. An island at once is rigid, and needs it.
+/// The default's springs are twice as stiff until they have given way by the slop, so that what
+/// lies in a heap overlaps half as far. Beyond it they are not: what is thick stands because its
+/// heaviest contacts give way. And three times as stiff would be more than one sweep can do: cards
+/// slide (docs/stability.md).
 template <int D>
 StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuning& tuning) {
   StepContext<D> context;
@@ -44,6 +49,7 @@ StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuni
   const bool springs = tuning.stabilisation == Stabilisation::kSoft &&
                        tuning.contact_block != ContactBlockRows::kIsland;
   context.slop = springs ? 0.0f : tuning.slop;
+  context.stiff_overlap = solves_loaded_islands(tuning) ? tuning.slop : 0.0f;
   if (tuning.stabilisation != Stabilisation::kSoft) {
     const bool biased = tuning.stabilisation == Stabilisation::kBaumgarte;
     context.contact = biased ? context.pseudo : kRigid;

@@ -68,7 +68,8 @@ template <int D, int W>
 }
 
 /// A gap s > 0 may be closed but not crossed in this substep: bias = s / h. Overlap beyond the slop
-/// is pushed out by the block's softness, at most at `push_speed_max`. Pseudo-velocities answer to
+/// is pushed out by the block's softness, its first `stiff_overlap` twice as fast, which makes a
+/// spring there twice as stiff, and all at most at `push_speed_max`. Pseudo-velocities answer to
 /// overlap alone: what is apart may not come closer by them. A relax sweep looks one substep ahead;
 /// what is about to bounce there keeps its `speed`, or it would arrive without it.
 /// @param soft  softness_of the block; not read by other sweeps than biased ones.
@@ -92,7 +93,8 @@ template <int D, int W>
     return row;
   }
   const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : soft.bias_rate;
-  const L overlap = min(point.gap + L(context.slop), L(0.0f));
+  const L beyond = min(point.gap + L(context.slop), L(0.0f));
+  const L overlap = max(L(2.0f) * beyond, beyond - L(context.stiff_overlap));
   row.bias = select(apart, row.bias, max(rate * overlap, L(-context.tuning.push_speed_max)));
   if (sweep == Sweep::kPseudo) return row;
   row.mass_scale = select(apart, row.mass_scale, soft.mass_scale);

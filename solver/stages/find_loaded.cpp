@@ -36,9 +36,7 @@ static bool is_loaded(const StepContext<D>& context, const JointRow<D>& row) {
 
 template <int D>
 LoadBounds load_bounds(const StepContext<D>& context) {
-  if (context.tuning.contact_block != ContactBlockRows::kLoadedIsland ||
-      !solves_islands(context.tuning))
-    return {};
+  if (!solves_loaded_islands(context.tuning)) return {};
   return {true, yield_of(context.contact), yield_of(context.contact_static), kYield};
 }
 

@@ -20,13 +20,18 @@ inline const scenes::Trial& trial_named(const std::string& name) {
   throw std::logic_error("no trial " + name);
 }
 
+/// Before its first tick.
+inline scenes::Simulation begin_scene(const scenes::Scene& scene) {
+  solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
+  EXPECT_TRUE(simulation.ok()) << simulation.error().field;
+  return std::move(simulation.value());
+}
+
 /// The scene of a trial under a method, before its first tick.
 inline scenes::Simulation begin_trial(const std::string& name, const solver::Tuning& method) {
   scenes::Scene scene = trial_named(name).make();
   scene.tuning = with_method(scene.tuning, method);
-  solver::Result<scenes::Simulation> simulation = scenes::Simulation::create(scene);
-  EXPECT_TRUE(simulation.ok()) << simulation.error().field;
-  return std::move(simulation.value());
+  return begin_scene(scene);
 }
 
 /// Whether anything was factored in the last tick: each product of blocks counts beside the sweeps.
