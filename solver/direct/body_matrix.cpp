@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "solver/lane_widths.hpp"
+#include "solver/least_first.hpp"
 
 namespace cycloid::solver {
 
@@ -62,27 +63,7 @@ int BodyMatrix<D>::rank(int node) const {
 /// different nodes, or they are the same; so who comes next depends on nothing else.
 template <int D>
 void BodyMatrix<D>::wait(int node) {
-  std::size_t at = heap_.size();
-  heap_.push_back({rank(node), static_cast<int>(steps_.size()), node});
-  while (at > 0 && heap_[at] < heap_[(at - 1) / 2]) {
-    std::swap(heap_[at], heap_[(at - 1) / 2]);
-    at = (at - 1) / 2;
-  }
-}
-
-/// The node whose entry is the least, which leaves the line.
-template <int D>
-int BodyMatrix<D>::take_least() {
-  const int node = heap_.front().node;
-  heap_.front() = heap_.back();
-  heap_.pop_back();
-  for (std::size_t at = 0, child = 1; child < heap_.size(); child = 2 * at + 1) {
-    if (child + 1 < heap_.size() && heap_[child + 1] < heap_[child]) ++child;
-    if (!(heap_[child] < heap_[at])) break;
-    std::swap(heap_[at], heap_[child]);
-    at = child;
-  }
-  return node;
+  put_in_line<Waiting>({rank(node), static_cast<int>(steps_.size()), node}, line_);
 }
 
 /// Block products that eliminating a node of so many neighbours takes.
@@ -118,12 +99,11 @@ template <int D>
 bool BodyMatrix<D>::analyse(Range nodes, int products_max, Range& steps) {
   const EliminationStep first = steps_.back();
   const auto begin = static_cast<int>(steps_.size()) - 1;
-  heap_.clear();
+  line_.clear();
   for (int node = nodes.begin; node < nodes.end; ++node) wait(node);
   int products = 0;
-  while (!heap_.empty() && products <= products_max) {
-    const int rank_then = heap_.front().rank;
-    const int node = take_least();
+  while (!line_.empty() && products <= products_max) {
+    const auto [rank_then, since, node] = take_least(line_);
     const auto at = static_cast<std::size_t>(node);
     if (eliminated_[at] != 0 || rank_then != rank(node)) continue;  // Its degree is an old one.
     products += eliminate(node);

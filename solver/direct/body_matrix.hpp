@@ -91,7 +91,6 @@ class BodyMatrix {
   int find(int a, int b) const;
   int rank(int node) const;
   void wait(int node);
-  int take_least();
   int eliminate(int node);
   void copy_blocks(Range steps, const std::vector<Block>& from_diagonal,
                    const std::vector<Block>& from_beside, std::vector<Block>& to_diagonal,
@@ -103,7 +102,7 @@ class BodyMatrix {
   std::vector<std::uint8_t> eliminated_;
   std::vector<std::uint8_t> is_last_;
   std::vector<Link> links_;
-  std::vector<Waiting> heap_;           ///< None before what it halves to.
+  std::vector<Waiting> line_;           ///< least_first.hpp.
   std::vector<EliminationStep> steps_;  ///< One more than there are.
   std::vector<ColumnEntry> entries_;
   std::vector<int> targets_;
