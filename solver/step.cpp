@@ -31,7 +31,7 @@ static void solve_substep(const StepContext<D>& context, const WorldState<D>& st
   traced(Phase::kVelocities);
   bounce_contacts<D, W>(context, lot, workers, scratch);
   traced(Phase::kBounce);
-  warm_start_constraints<D, W>(lot, workers, scratch);
+  warm_start_constraints<D, W>(context, lot, workers, scratch);
   traced(Phase::kWarmStart);
   solve_islands<D, W>(context, lot, workers, scratch);
   for (std::uint32_t sweep = 0; sweep < tuning.sweeps; ++sweep) {

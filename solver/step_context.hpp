@@ -18,6 +18,7 @@ struct StepContext {
   Softness joint;
   Softness pseudo;                 ///< Of pseudo-velocity sweeps, which are rigid and biased.
   Softness motor;                  ///< Of position motors without a frequency of their own.
+  float guess_spin_max;            ///< rad/s that the guess of a joint may turn a body by.
   float slop;                      ///< m of overlap that velocity sweeps leave alone.
   float stiff_overlap;             ///< m beyond it that count twice: normal_row.
   std::uint32_t lot_contacts = 0;  ///< Of a lot that is asked for; 0: what suits. Changes no bit.
@@ -25,6 +26,14 @@ struct StepContext {
   bool odd = false;      ///< Of the number of the tick and the substep in sum: see point_in_turn.
   bool is_first = true;  ///< Of the substeps of the tick.
 };
+
+/// The most that the impulses of the substep before may turn a body as a guess, rad in a substep.
+/// They act along rows that have turned since. A force f that goes with its body's arm r is a
+/// spring of stiffness r f to how the body turns, and as a guess an explicit one: with the impulse
+/// lambda = h f it stays bounded while h lambda r / I = h^2 r f / I is below 4, and beyond that it
+/// throws out what is light within a few substeps. With 2 and 1 a net of 10,000 balls sags by more.
+/// Methods whose substeps are long carry chains by such guesses, and close them by positions.
+inline constexpr float kGuessTurns_rad = 3.0f;
 
 /// Stiffness above a fraction of the substep rate turns into noise: contacts are held to an eighth
 /// of it and joints to a quarter (Catto, Solver2D).
@@ -48,6 +57,9 @@ StepContext<D> make_step_context(float tick_s, const Vec<D>& gravity, const Tuni
   context.motor = spring_softness(joint_hertz, tuning.joint_damping_ratio, context.h);
   const bool springs = tuning.stabilisation == Stabilisation::kSoft &&
                        tuning.contact_block != ContactBlockRows::kIsland;
+  constexpr float kAnySpin = 1.0e18f;  // Its square is finite.
+  context.guess_spin_max =
+      tuning.stabilisation == Stabilisation::kSoft ? kGuessTurns_rad * context.inverse_h : kAnySpin;
   context.slop = springs ? 0.0f : tuning.slop;
   context.stiff_overlap = solves_loaded_islands(tuning) ? tuning.slop : 0.0f;
   if (tuning.stabilisation != Stabilisation::kSoft) {

@@ -82,6 +82,16 @@ struct FastBody {
   float stop = 1.0f;       ///< The fraction of the tick at which it stops.
 };
 
+/// A body that ends its way before the tick does.
+struct Stop {
+  std::uint32_t slot;
+  float fraction;  ///< Of the tick.
+
+  bool operator<(const Stop& other) const {
+    return fraction != other.fraction ? fraction < other.fraction : slot < other.slot;
+  }
+};
+
 /// How what a shape of a fast body may meet is found.
 enum class WayIs : std::uint8_t {
   kUnknown,   ///< It is of no fast body, or its way is not needed.
@@ -204,6 +214,11 @@ struct StepScratch : ContactList<D> {
   std::vector<ShapePair> some_pairs;         ///< For list_meetings to work in.
   std::vector<ShapePair> meetings;           ///< Which may meet on the way of a fast body.
   std::vector<float> fractions;              ///< Of meetings: of the tick, at which they do.
+  std::vector<Stop> stops;                   ///< Of fast bodies and what is jointed to them.
+  std::vector<Stop> coming_stops;            ///< For spread_stops: a line (least_first.hpp).
+  std::vector<std::uint32_t> rows_of;        ///< Places of joint rows, by body; the same ...
+  std::vector<int> rows_of_ends;             ///< ... and of counting_sort.
+  std::vector<std::uint8_t> is_stopped;      ///< By body, for spread_stops, which leaves it 0.
   ParticleScratch<D> particles;
   WorldState<D> before;  ///< Of worlds with particles, to undo a tick that faults.
   ByWidth<ContactBlocks, D> contact_blocks;    ///< Only that of the chosen width is filled.

@@ -152,7 +152,9 @@ void project_contact(const StepContext<D>& context, ContactBlock<D, W>& block,
       square += part * part;
     }
     const L bound = block.friction * total;
-    const L sticks = select(square > bound * bound, L(0.0f), L(1.0f));
+    const L held = select(square > bound * bound, L(0.0f), L(1.0f));
+    // As hold_to_cone: what has no friction may share its block with what has.
+    const L sticks = select(bound > L(0.0f), held, L(0.0f));
     move_pair(sticks * lambda, now, block, a, b);
   }
   scatter_pose(a, block.moves_a, block.body_a, motions);

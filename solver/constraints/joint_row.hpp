@@ -44,6 +44,7 @@ struct JointRow : ConeLimit<D> {
   Softness spring_of[2];  ///< Of the blocks; meant where is_spring.
   bool is_spring[2];
   float impulse_max[2];  ///< N s and N m s; length of a block's impulse.
+  bool holds_point;      ///< Of both bodies, its anchors, at one place (prepare_joints).
   bool parted;           ///< Its points were far apart when the tick began (prepare_joints).
   bool in_island;        ///< The equalities belong to the island solver.
   bool solved_directly;  ///< They belong to it or to the tree solver.

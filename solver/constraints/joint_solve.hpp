@@ -20,13 +20,78 @@ PairImpulse<D> impulse_of_equalities(const JointRow<D>& row) {
   return sum;
 }
 
+/// J^T lambda of all its rows.
 template <int D>
-void warm_start(const JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+PairImpulse<D> impulse_of_all(const JointRow<D>& row) {
   PairImpulse<D> sum = impulse_of_equalities(row);
-  if (row.rows.has_axis) {
-    sum.add(row.rows.axis, row.spring_impulse + row.lower_impulse - row.upper_impulse);
-    sum.add(row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis, row.motor_impulse);
-    add_cone_impulse(row, sum);
+  if (!row.rows.has_axis) return sum;
+  sum.add(row.rows.axis, row.spring_impulse + row.lower_impulse - row.upper_impulse);
+  sum.add(row.rows.has_motor_axis ? row.rows.motor_axis : row.rows.axis, row.motor_impulse);
+  add_cone_impulse(row, sum);
+  return sum;
+}
+
+/// The square of how fast a guess may turn a body, rad/s: by its torque, and by its force about the
+/// arm, however the two stand to one another. Over the rows of a point the sum of J_w I^-1 J_w^T is
+/// (D - 1) r^2 / I, and that of J_w J_w^T is (D - 1) r^2.
+/// @param angular_of  J_w of the first rows, as many as a point has.
+template <int D, class AngularOf>
+float turn_square_of_guess(const Inertia<D>& inverse_inertia, int count, AngularOf&& angular_of,
+                           float force_square, const Spin<D>& torque) {
+  float answers = 0.0f;
+  float arms = 1.0e-12f;
+  for (int i = 0; i < count; ++i) {
+    const Spin<D> angular = angular_of(i);
+    answers += dot(angular, inverse_inertia * angular);
+    arms += dot(angular, angular);
+  }
+  const Spin<D> turn = inverse_inertia * torque;
+  const float by_force = force_square * answers * answers / (static_cast<float>(D - 1) * arms);
+  return max(by_force, dot(turn, turn));
+}
+
+/// How much of a joint's guess is stable, from 0 to 1: it turns no body faster than `spin_max`.
+template <int D>
+float stable_share(float spin_max, const JointRow<D>& row, const PairImpulse<D>& guess) {
+  const int count = row.rows.split < D ? row.rows.split : D;
+  const auto equality = [&](int i) -> const Row<D>& {
+    return row.rows.rows[static_cast<std::size_t>(i)];
+  };
+  float square = 0.0f;
+  for (int i = 0; i < count; ++i) square += row.impulse[i] * row.impulse[i];
+  const float turn_a = turn_square_of_guess<D>(
+      row.mass_a.inverse_inertia, count, [&](int i) { return equality(i).angular_a; }, square,
+      guess.angular_a);
+  const float turn_b = turn_square_of_guess<D>(
+      row.mass_b.inverse_inertia, count, [&](int i) { return equality(i).angular_b; }, square,
+      guess.angular_b);
+  const float turn = max(turn_a, turn_b);
+  return turn > spin_max * spin_max ? spin_max / sqrt(turn) : 1.0f;
+}
+
+inline void scale_cone_impulse(float, JointRow<2>&) {}
+inline void scale_cone_impulse(float share, JointRow<3>& row) {
+  row.cone_impulse *= share;
+}
+
+template <int D>
+void scale_impulses(float share, JointRow<D>& row) {
+  for (float& impulse : row.impulse) impulse *= share;
+  for (float* impulse :
+       {&row.spring_impulse, &row.motor_impulse, &row.lower_impulse, &row.upper_impulse})
+    *impulse *= share;
+  scale_cone_impulse(share, row);
+}
+
+/// v += M^-1 J^T lambda, of as much of lambda as is stable; of what is solved at once that is all,
+/// for it takes such forces implicitly (IslandTension).
+template <int D>
+void warm_start(float spin_max, JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+  PairImpulse<D> sum = impulse_of_all(row);
+  const float share = row.solved_directly ? 1.0f : stable_share(spin_max, row, sum);
+  if (share < 1.0f) {
+    scale_impulses(share, row);
+    sum = impulse_of_all(row);
   }
   apply(row, sum, a, b);
 }

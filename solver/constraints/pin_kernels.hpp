@@ -28,8 +28,8 @@ struct PinKernels {
   /// C, J and K^-1 at the present poses (evaluate_rows).
   /// @param limit_reach_s  How far ahead in time a limit is near.
   static void evaluate(float limit_reach_s, const PinRange<D, W>& range);
-  /// v += M^-1 J^T lambda.
-  static void warm_start(const PinRange<D, W>& range);
+  /// v += M^-1 J^T lambda, of as much of lambda as turns no body faster than `spin_max`, rad/s.
+  static void warm_start(float spin_max, const PinRange<D, W>& range);
   /// The same of the equalities alone.
   static void warm_start_equalities(const PinRange<D, W>& range);
   /// Which lanes have an equality that misses more than each bound.

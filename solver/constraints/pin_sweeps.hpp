@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/constraints/pin_evaluation.hpp"
+#include "solver/constraints/pin_guess.hpp"
 
 namespace cycloid::solver {
 
@@ -204,62 +205,10 @@ template <int N, int D, int W>
   scatter_velocities(range, block, motions);
 }
 
-template <int W>
-[[gnu::always_inline]] inline void add_rubbing(const PinBlock<2, W>&, PinImpulse<2, W>&) {}
-template <int W>
-[[gnu::always_inline]] inline void add_rubbing(const PinBlock<3, W>& block, PinImpulse<3, W>& sum) {
-  if (!block.form.rubs) return;
-  for (int i = 0; i < 3; ++i) {
-    sum.angular_a[i] -= block.turns->rub_impulse[i];
-    sum.angular_b[i] += block.turns->rub_impulse[i];
-  }
-}
-
-template <int W>
-[[gnu::always_inline]] inline void add_cone(const PinBlock<2, W>&, PinImpulse<2, W>&) {}
-template <int W>
-[[gnu::always_inline]] inline void add_cone(const PinBlock<3, W>& block, PinImpulse<3, W>& sum) {
-  if (block.form.has_cone) add_couple(block.turns->swing, -block.turns->cone_impulse, sum);
-}
-
-template <int D, int W>
-[[gnu::always_inline]] inline void add_turns(const PinBlock<D, W>& block, PinImpulse<D, W>& sum) {
-  add_rubbing(block, sum);
-  if (!block.form.has_motor && !block.form.has_limits) return;
-  const PinTurns<D, W>& turns = *block.turns;
-  add_couple(turns.axis, turns.lower_impulse - turns.upper_impulse, sum);
-  add_couple(turns.axis, turns.motor_impulse, sum);
-  add_cone(block, sum);
-}
-
 template <int D, int W>
 void PinKernels<D, W>::evaluate(float limit_reach_s, const PinRange<D, W>& range) {
   for (PinBlock<D, W>* block = range.begin; block != range.end; ++block)
     evaluate_pin(limit_reach_s, range, *block);
-}
-
-/// v += M^-1 J^T lambda of the equalities, and of the rest where a pin has any and it is asked for.
-template <int D, int W>
-[[gnu::always_inline]] inline void push_again(const PinRange<D, W>& range, bool all_rows) {
-  for (PinBlock<D, W>* block = range.begin; block != range.end; ++block) {
-    PinMotions<D, W> motions = gather_velocities(range, *block);
-    PinImpulse<D, W> sum;
-    const int count = equalities_of<D>(block->form);
-    for (int i = 0; i < count; ++i) add_equality(*block, i, block->impulse[i], sum);
-    if (all_rows && block->turns != nullptr) add_turns(*block, sum);
-    apply(*block, sum, motions);
-    scatter_velocities(range, *block, motions);
-  }
-}
-
-template <int D, int W>
-void PinKernels<D, W>::warm_start(const PinRange<D, W>& range) {
-  push_again(range, true);
-}
-
-template <int D, int W>
-void PinKernels<D, W>::warm_start_equalities(const PinRange<D, W>& range) {
-  push_again(range, false);
 }
 
 template <int D, int W>

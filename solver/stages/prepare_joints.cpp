@@ -71,11 +71,11 @@ static void set_cone(float share, const Joint<3>& joint, JointRow<3>& row) {
 /// its length then never quite comes together. From 0.02 to 0.1 is all the same.
 static constexpr float kParted = 0.08f;
 
-/// Of a user's joint whose first rows hold a point, what they say; else 0, m. @pre its function is
-/// registered.
+/// How far apart the points are that a user's joint holds together, by its first rows, m; 0 where
+/// those are fewer than a point has. @pre its function is registered.
 template <int D>
-static Vec<D> apart_by_rows(const StepContext<D>& context, const WorldState<D>& state,
-                            const JointRow<D>& row) {
+static float apart_by_rows(const StepContext<D>& context, const WorldState<D>& state,
+                           const JointRow<D>& row) {
   const Body<D>& a = state.bodies[row.body_a];
   const Body<D>& b = state.bodies[row.body_b];
   const auto tick = static_cast<std::int64_t>(state.header.tick);
@@ -86,29 +86,35 @@ static Vec<D> apart_by_rows(const StepContext<D>& context, const WorldState<D>& 
   Vec<D> apart = Vec<D>::zero();
   for (int i = 0; i < D && rows.split >= D; ++i)
     apart[i] = rows.rows[static_cast<std::size_t>(i)].error;
-  return apart;
+  return length(apart);
 }
 
-/// From where a joint holds a point of one body to that point of the other, m; 0 of a joint that
-/// holds none.
+/// Whether joints of this kind hold the anchor on one body at that on the other.
+static bool holds_anchors(JointKind kind) {
+  return kind == JointKind::kRevolute || kind == JointKind::kWeld || kind == JointKind::kHinge ||
+         kind == JointKind::kConeTwist;
+}
+
+/// Whether a joint holds its anchors together, and whether they are far apart. That of a user does
+/// where its rows are as far from where they belong as its anchors are.
 template <int D>
-static Vec<D> points_apart(const StepContext<D>& context, const WorldState<D>& state,
-                           const JointRow<D>& row) {
+static void look_at_anchors(const StepContext<D>& context, const WorldState<D>& state,
+                            JointRow<D>& row) {
+  constexpr float kSame = 1.0e-4f;  // m
   const Joint<D>& joint = state.joints[row.joint];
-  switch (joint.kind) {
-    case JointKind::kRevolute:
-    case JointKind::kWeld:
-    case JointKind::kHinge:
-    case JointKind::kConeTwist:
-      return row.centre_offset + (rotate(state.bodies[row.body_b].rotation, joint.anchor_b) -
-                                  rotate(state.bodies[row.body_a].rotation, joint.anchor_a));
-    case JointKind::kUser:
-      if (row.rows_function != nullptr) return apart_by_rows(context, state, row);
-      break;
-    default:
-      break;
+  row.holds_point = holds_anchors(joint.kind);
+  row.parted = false;
+  const bool is_users = joint.kind == JointKind::kUser && row.rows_function != nullptr;
+  if (!row.holds_point && !is_users) return;
+  float apart =
+      length(row.centre_offset + (rotate(state.bodies[row.body_b].rotation, joint.anchor_b) -
+                                  rotate(state.bodies[row.body_a].rotation, joint.anchor_a)));
+  if (is_users) {
+    const float by_rows = apart_by_rows(context, state, row);
+    row.holds_point = abs(by_rows - apart) < kSame;
+    apart = by_rows;
   }
-  return Vec<D>::zero();
+  row.parted = apart > kParted;
 }
 
 /// @param row  May be of another joint and tick: everything is written but what evaluate_rows
@@ -130,8 +136,7 @@ static void set_row(const StepContext<D>& context, const WorldState<D>& state,
   set_axis(context, joint, row);
   take_impulses(context.tuning.warm_starting, joint, row);
   set_cone(context.tuning.warm_starting, joint, row);
-  const Vec<D> apart = points_apart(context, state, row);
-  row.parted = dot(apart, apart) > kParted * kParted;
+  look_at_anchors(context, state, row);
   row.in_island = row.solved_directly = row.relaxes = row.limit_near = false;
   row.rows.drop();
 }

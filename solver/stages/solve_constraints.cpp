@@ -15,16 +15,21 @@ static void with_bodies(JointRow<D>& row, std::span<Motion<D>> motions, Act&& ac
 /// v += M^-1 J^T lambda with the impulses of the substep before: the solution of a world at rest is
 /// found again at once.
 ///
-/// Reads the accumulated impulses; writes velocities. Colour after colour (for_each_by_color).
+/// Reads the accumulated impulses; writes velocities, and the impulses of joints whose guess would
+/// turn a body too far (kGuessTurns_rad). Colour after colour (for_each_by_color).
 template <int D, int W>
-void warm_start_constraints(const Lot& lot, Workers& workers, StepScratch<D>& scratch) {
+void warm_start_constraints(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                            StepScratch<D>& scratch) {
   const std::span<Motion<D>> motions = scratch.motions;
   for_each_joint_by_color(
       workers, scratch,
-      []<int P>(const PinRange<D, P>& pins) { PinKernels<D, P>::warm_start(pins); },
+      [&]<int P>(const PinRange<D, P>& pins) {
+        PinKernels<D, P>::warm_start(context.guess_spin_max, pins);
+      },
       [&](JointRow<D>& joint) {
-        with_bodies<D>(joint, motions,
-                       [](JointRow<D>& row, Motion<D>& a, Motion<D>& b) { warm_start(row, a, b); });
+        with_bodies<D>(joint, motions, [&](JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
+          warm_start(context.guess_spin_max, row, a, b);
+        });
       });
   for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
     ContactKernels<D, W>::warm_start(blocks);

@@ -123,7 +123,8 @@ void solve_islands(const StepContext<D>& context, const Lot& lot, Workers& worke
 template <int D>
 void correct_islands(const StepContext<D>& context, StepScratch<D>& scratch);
 template <int D, int W>
-void warm_start_constraints(const Lot& lot, Workers& workers, StepScratch<D>& scratch);
+void warm_start_constraints(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                            StepScratch<D>& scratch);
 template <int D, int W>
 void solve_constraints(const StepContext<D>& context, Sweep sweep, const Lot& lot, Workers& workers,
                        StepScratch<D>& scratch);
@@ -154,6 +155,9 @@ void list_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
 template <int D>
 void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                    StepScratch<D>& scratch);
+template <int D>
+void spread_stops(const StepContext<D>& context, const WorldState<D>& state,
+                  StepScratch<D>& scratch);
 template <int D>
 void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch);

@@ -122,12 +122,14 @@ static FastBody* stopped_at(const WorldState<D>& state, StepScratch<D>& scratch,
 
 /// Continuous collision: a fast body ends the tick where it first meets what it did not touch
 /// before. Its velocity stays; the contact of the next tick answers to it. The rest of its way is
-/// lost. So what is pushed on is stopped only at what does not yield: what pushes it would run over
-/// it, and a crowd that is driven would end up in its driver.
+/// lost, and what is jointed to it ends with it (spread_stops). So what is pushed on is stopped
+/// only at what does not yield: what pushes it would run over it, and a crowd that is driven would
+/// end up in its driver.
 ///
-/// Reads motions, shapes and the meetings; writes the fraction of each meeting, from the ways of
-/// all as the sweeps left them, then the least for each fast body, then the deltas. So neither the
-/// order of the meetings nor any split into ranges shows in the bits.
+/// Reads motions, shapes, joints and the meetings; writes the fraction of each meeting, from the
+/// ways of all as the sweeps left them, then the least for each fast body, then those of what is
+/// jointed to them, then the deltas. So neither the order of the meetings nor any split into ranges
+/// shows in the bits.
 template <int D>
 void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                       StepScratch<D>& scratch) {
@@ -153,11 +155,11 @@ void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
     for (FastBody* fast : {stopped_at(state, scratch, a, b), stopped_at(state, scratch, b, a)})
       if (fast != nullptr) fast->stop = min(fast->stop, scratch.fractions[i]);
   }
-  for (const FastBody& fast : scratch.fast_bodies) {
-    if (fast.stop == 1.0f) continue;
-    Motion<D>& motion = scratch.motions[fast.slot];
-    motion.delta_rotation = rotation_by(fast.stop * turn_in(context, motion));
-    motion.delta_position = fast.stop * motion.delta_position;
+  spread_stops(context, state, scratch);
+  for (const Stop& stop : scratch.stops) {
+    Motion<D>& motion = scratch.motions[stop.slot];
+    motion.delta_rotation = rotation_by(stop.fraction * turn_in(context, motion));
+    motion.delta_position = stop.fraction * motion.delta_position;
   }
 }
 
