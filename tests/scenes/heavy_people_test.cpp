@@ -18,7 +18,7 @@ class Chance {
   std::mt19937 bits_;
 };
 
-/// Six people in space, every other one a hundred times as heavy, who fall upon one another.
+/// Six people in space, by chance half of them a hundred times as heavy, who fall upon one another.
 Scene unequal_people(std::uint32_t seed) {
   constexpr std::size_t kLimbs = 11;
   Chance chance(seed);
