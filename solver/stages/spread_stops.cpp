@@ -10,8 +10,8 @@ namespace cycloid::solver {
 
 /// Over the slop, how far what is jointed to a body that stops may part from it. With less, people
 /// who are thrown together keep the gaps that their joints were about to close: of 32 with motors,
-/// elastic, 162 of 200 runs stand with 2 instead of 181 with 3 and 192 without this. With 4 people
-/// who fall part by a sixth more.
+/// elastic, 162 of 200 runs stand with 2 instead of 182 with 3 and 192 without this. With 4 people
+/// who fall part by a twentieth more.
 static constexpr float kPartOfSlops = 3.0f;
 
 /// Lists the joint rows of each body. @returns whether one of the stopped has any.

@@ -46,7 +46,7 @@ int faults_in(const Scene& scene) {
   return 0;
 }
 
-// Until version 34 it threw out 7 of 200.
+// Up to version 34 somebody was thrown out in 7 of 200.
 TEST(HeavyPeople, WhoFallUponLightOnesThrowNobodyOut) {
   for (std::uint32_t seed = 1; seed <= 200; ++seed)
     EXPECT_EQ(faults_in(unequal_people(seed)), 0) << seed;
