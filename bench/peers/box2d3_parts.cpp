@@ -27,15 +27,16 @@ static b2Hull hull_of(const solver::Shape<2>& shape) {
   return b2ComputeHull(corners, static_cast<int>(shape.vertex_count));
 }
 
-/// Ours is solid to the right of its direction, Box2D's to the left.
+/// A segment is stored with its free side to its right, as Box2D has it; the ghosts of its ends are
+/// its third and fourth corner.
 static b2ChainSegment edge_of(const solver::Shape<2>& shape) {
-  const b2Vec2 from = to_box2d3(shape.vertices[1]);
-  const b2Vec2 to = to_box2d3(shape.vertices[0]);
+  const b2Vec2 from = to_box2d3(shape.vertices[0]);
+  const b2Vec2 to = to_box2d3(shape.vertices[1]);
   const b2Vec2 along = b2Sub(to, from);
   b2ChainSegment edge = {};
-  edge.ghost1 = (shape.ghosts & 2u) != 0 ? to_box2d3(shape.vertices[3]) : b2Sub(from, along);
+  edge.ghost1 = (shape.ghosts & 1u) != 0 ? to_box2d3(shape.vertices[2]) : b2Sub(from, along);
   edge.segment = {from, to};
-  edge.ghost2 = (shape.ghosts & 1u) != 0 ? to_box2d3(shape.vertices[2]) : b2Add(to, along);
+  edge.ghost2 = (shape.ghosts & 2u) != 0 ? to_box2d3(shape.vertices[3]) : b2Add(to, along);
   return edge;
 }
 

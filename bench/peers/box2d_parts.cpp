@@ -45,13 +45,14 @@ static void add_capsule(const solver::Shape<2>& shape, b2FixtureDef& def, b2Body
   into.CreateFixture(&def);
 }
 
-/// Ours is solid to the right of its direction, Box2D's to the left.
+/// A segment is stored with its free side to its right, as Box2D has it; the ghosts of its ends are
+/// its third and fourth corner.
 static b2EdgeShape edge_of(const solver::Shape<2>& shape) {
-  const b2Vec2 from = to_box2d(shape.vertices[1]);
-  const b2Vec2 to = to_box2d(shape.vertices[0]);
+  const b2Vec2 from = to_box2d(shape.vertices[0]);
+  const b2Vec2 to = to_box2d(shape.vertices[1]);
   const b2Vec2 along = to - from;
-  const b2Vec2 before = (shape.ghosts & 2u) != 0 ? to_box2d(shape.vertices[3]) : from - along;
-  const b2Vec2 after = (shape.ghosts & 1u) != 0 ? to_box2d(shape.vertices[2]) : to + along;
+  const b2Vec2 before = (shape.ghosts & 1u) != 0 ? to_box2d(shape.vertices[2]) : from - along;
+  const b2Vec2 after = (shape.ghosts & 2u) != 0 ? to_box2d(shape.vertices[3]) : to + along;
   b2EdgeShape edge;
   edge.SetOneSided(before, from, to, after);
   return edge;
