@@ -52,6 +52,17 @@ static std::span<const Op> ops_of_chains() {
   return kOps;
 }
 
+/// The same where few bodies, jointed anyhow, are put into one another and thrown: what turns fast
+/// or is torn reaches the ends of what float can hold, where lanes have parted.
+static std::span<const Op> ops_of_throws() {
+  static constexpr Op kOps[] = {
+      Op::kStep,        Op::kCreateBody, Op::kCreateJoint, Op::kSetPose,    Op::kSetVelocity,
+      Op::kCreateBody,  Op::kStep,       Op::kCreateBody,  Op::kSetPose,    Op::kCreateJoint,
+      Op::kSetVelocity, Op::kStep,       Op::kCreateBody,  Op::kCreateGrid, Op::kRevisit,
+      Op::kMass,        Op::kTuning,     Op::kMaterial,    Op::kLimits,     Op::kMotor};
+  return kOps;
+}
+
 static rc::Gen<Op> op(std::span<const Op> ops) {
   return rc::gen::map(choice(static_cast<std::uint32_t>(ops.size())),
                       [ops](std::uint32_t i) { return ops[i]; });
@@ -77,11 +88,12 @@ static rc::Gen<std::uint32_t> tuning() {
 }
 
 rc::Gen<Case> cases(int dimension) {
-  return rc::gen::construct<Case>(rc::gen::just(dimension), tuning(), choice(3),
-                                  rc::gen::map(choice(12), [](std::uint32_t g) { return int(g); }),
-                                  setting(), setting(),
-                                  rc::gen::weightedOneOf<std::vector<Command>>(
-                                      {{3, commands(any_ops())}, {1, commands(ops_of_chains())}}));
+  return rc::gen::construct<Case>(
+      rc::gen::just(dimension), tuning(), choice(3),
+      rc::gen::map(choice(12), [](std::uint32_t g) { return int(g); }), setting(), setting(),
+      rc::gen::weightedOneOf<std::vector<Command>>({{3, commands(any_ops())},
+                                                    {1, commands(ops_of_chains())},
+                                                    {1, commands(ops_of_throws())}}));
 }
 
 }  // namespace cycloid::properties
