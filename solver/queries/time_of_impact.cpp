@@ -51,21 +51,29 @@ static void measure_arms(Mover<2>& mover) {
   for (int lane = 0; lane < 4; ++lane) mover.reach = max(mover.reach, reach.raw[lane]);
 }
 
+/// Where it is at a fraction of its way, relative to where body a starts, so that the world
+/// position costs no digits.
 template <int D>
-static Mover<D> mover_at(const Shape<D>& shape, const BodySweep<D>& sweep, const Vec<D>& offset,
-                         float fraction, const Polyhedra& polyhedra) {
-  // Relative to where body a starts, so that the world position costs no digits.
-  const Vec<D> centre = offset + fraction * sweep.translation;
-  const Rotation<D> rotation = pose_at(sweep, fraction).rotation;
-  Mover<D> mover{core_of(shape, rotation, centre, polyhedra),
-                 centre,
-                 sweep.translation,
-                 sweep.turn,
-                 length(sweep.turn),
-                 {},
-                 0.0f};
+static void put_at(Mover<D>& mover, const Shape<D>& shape, const BodySweep<D>& sweep,
+                   const Vec<D>& offset, float fraction, const Polyhedra& polyhedra) {
+  mover.centre = offset + fraction * sweep.translation;
+  mover.core = core_of(shape, pose_at(sweep, fraction).rotation, mover.centre, polyhedra);
+}
+
+/// At the start of its way.
+template <int D>
+static Mover<D> mover_of(const Shape<D>& shape, const BodySweep<D>& sweep, const Vec<D>& offset,
+                         const Polyhedra& polyhedra) {
+  Mover<D> mover{{}, {}, sweep.translation, sweep.turn, length(sweep.turn), {}, 0.0f};
+  put_at(mover, shape, sweep, offset, 0.0f, polyhedra);
   measure_arms(mover);
   return mover;
+}
+
+/// Whether it stays where it is. Most fast bodies meet what is static.
+template <int D>
+static bool rests(const Mover<D>& mover) {
+  return dot(mover.translation, mover.translation) == 0.0f && mover.turn_rate == 0.0f;
 }
 
 /// How a surface lies along an axis and moves: `turning` [m per way^2] bounds its acceleration.
@@ -232,12 +240,16 @@ Impact time_of_impact(const Shape<D>& a, const BodySweep<D>& sweep_a, const Shap
   const float level = target - 0.5f * tolerance;
   float fraction = 0.0f;
   bool stopped_before = false;
+  Mover<D> mover_a = mover_of(a, sweep_a, Vec<D>::zero(), polyhedra);
+  Mover<D> mover_b = mover_of(b, sweep_b, a_to_b, polyhedra);
+  const float speed_max = length(sweep_b.translation - sweep_a.translation) +
+                          mover_a.turn_rate * mover_a.reach + mover_b.turn_rate * mover_b.reach;
+  if (speed_max <= 1.0e-12f) return {};
+  const bool a_moves = !rests(mover_a);
+  const bool b_moves = !rests(mover_b);
   for (int i = 0; i < kSteps; ++i) {
-    const Mover<D> mover_a = mover_at(a, sweep_a, Vec<D>::zero(), fraction, polyhedra);
-    const Mover<D> mover_b = mover_at(b, sweep_b, a_to_b, fraction, polyhedra);
-    const float speed_max = length(sweep_b.translation - sweep_a.translation) +
-                            mover_a.turn_rate * mover_a.reach + mover_b.turn_rate * mover_b.reach;
-    if (speed_max <= 1.0e-12f) return {};
+    if (i > 0 && a_moves) put_at(mover_a, a, sweep_a, Vec<D>::zero(), fraction, polyhedra);
+    if (i > 0 && b_moves) put_at(mover_b, b, sweep_b, a_to_b, fraction, polyhedra);
     const Separation<D> between = separation_of(mover_a.core, mover_b.core);
     // What lies across a segment on the way has come from behind.
     const bool from_behind = sided && between.crossing && i > 0;

@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "solver/collision/bounds.hpp"
 #include "solver/queries/separation.hpp"
 #include "solver/stages/fast_bodies.hpp"
 #include "solver/stages/may_touch.hpp"
@@ -47,6 +48,31 @@ static bool stays_above(const Traveller<D>& ground, const Shape<D>& half_space,
   return height + min(dot(normal, body.motion.delta_position), 0.0f) > reach;
 }
 
+/// Whether the centre of a body stays farther than its reach beside the box of a long shape, as
+/// seen from that shape's body, which turns; it leaves the chord of its way there by as much as in
+/// `way_past`. Of those near a bar that turns fast most do. @pre neither is a half-space.
+template <int D>
+static bool stays_beside(const StepContext<D>& context, const Shape<D>& shape,
+                         const Traveller<D>& bar, const Traveller<D>& other, float reach) {
+  constexpr float kLong = 4.0f;
+  if (bar.start.extent < kLong * bar.start.thickness || winds(context, bar.motion)) return false;
+  const Vec<D> from = other.start.position - bar.start.position;
+  const Vec<D> way = other.motion.delta_position - bar.motion.delta_position;
+  const float turn = turn_bound(bar.motion.delta_rotation);
+  const float size = length(way);
+  const float bulge = 0.125f * turn * (turn * (length(from) + size) + 2.0f * size);
+  const Vec<D> begin = rotate_back(bar.start.rotation, from);
+  const Vec<D> end =
+      rotate_back(bar.start.rotation, rotate_back(bar.motion.delta_rotation, from + way));
+  const Pose<D> own{Vec<D>::zero(), identity_rotation<D>()};
+  // A hundredth more covers all rounding.
+  const Bounds<D> box = bounds_of(shape, own, 1.01f * (reach + bulge));
+  for (int i = 0; i < D; ++i) {
+    if (max(begin[i], end[i]) < box.lower[i] || min(begin[i], end[i]) > box.upper[i]) return true;
+  }
+  return false;
+}
+
 template <int D>
 static bool has_contact(const StepScratch<D>& scratch, std::uint32_t one, std::uint32_t other) {
   const std::pair<std::uint32_t, std::uint32_t> wanted = std::minmax(one, other);
@@ -59,28 +85,44 @@ static bool has_contact(const StepScratch<D>& scratch, std::uint32_t one, std::u
          found->shape_b == wanted.second;
 }
 
-/// Whether the contacts of two shapes have kept them apart: they end the tick overlapping by less
-/// than the tolerance, m, after a way on which neither could have passed through the other. What
-/// contacts have not seen, a corner that comes round while another one touches, would show as
-/// overlap. Without this a pair that touches and turns takes the most steps of all, and is stopped
-/// on a way that the contact solver has already found. With four times the tolerance a card house
-/// loses two cards.
+/// Two shapes that may meet, and the ways of their bodies.
 template <int D>
-static bool contacts_hold(const WorldState<D>& state, const Shape<D>& a,
-                          const BodySweep<D>& sweep_a, const Shape<D>& b,
-                          const BodySweep<D>& sweep_b, float tolerance) {
-  if (a.kind == ShapeKind::kSegment || a.kind == ShapeKind::kTriangle) return false;
-  const Body<D>& body_a = state.bodies[a.body];
-  const Body<D>& body_b = state.bodies[b.body];
-  const float way = length(sweep_b.translation - sweep_a.translation) +
-                    body_a.extent * length(sweep_a.turn) + body_b.extent * length(sweep_b.turn);
-  if (a.kind != ShapeKind::kHalfSpace && way > body_a.thickness + body_b.thickness) return false;
-  const Vec<D> from_a =
-      sweep_b.start.position + sweep_b.translation - (sweep_a.start.position + sweep_a.translation);
-  const Separation<D> end =
-      separation_of(core_of(a, pose_at(sweep_a, 1.0f).rotation, Vec<D>::zero(), state.polyhedra),
-                    core_of(b, pose_at(sweep_b, 1.0f).rotation, from_a, state.polyhedra));
-  return end.distance > -tolerance;
+struct Meeting {
+  const Shape<D>& a;
+  const Shape<D>& b;
+  BodySweep<D> sweep_a;
+  BodySweep<D> sweep_b;
+};
+
+/// How far two shapes are apart at a fraction of their ways, m.
+template <int D>
+static float distance_at(const WorldState<D>& state, const Meeting<D>& meeting, float fraction) {
+  const Pose<D> a = pose_at(meeting.sweep_a, fraction);
+  const Pose<D> b = pose_at(meeting.sweep_b, fraction);
+  return separation_of(core_of(meeting.a, a.rotation, Vec<D>::zero(), state.polyhedra),
+                       core_of(meeting.b, b.rotation, b.position - a.position, state.polyhedra))
+      .distance;
+}
+
+/// Whether the contacts of two shapes have kept them apart: they end the tick overlapping by less
+/// than the tolerance, m, or by less than that more than at its start, after a way on which neither
+/// could have passed through the other. What contacts have not seen, a corner that comes round
+/// while another one touches, would show as overlap. Without this a pair that touches and turns
+/// takes the most steps of all, and is stopped on a way that the contact solver has already found.
+/// With four times the tolerance a card house loses two cards.
+template <int D>
+static bool contacts_hold(const WorldState<D>& state, const Meeting<D>& meeting, float tolerance) {
+  const ShapeKind kind = meeting.a.kind;
+  if (kind == ShapeKind::kSegment || kind == ShapeKind::kTriangle) return false;
+  const Body<D>& a = state.bodies[meeting.a.body];
+  const Body<D>& b = state.bodies[meeting.b.body];
+  const float way = length(meeting.sweep_b.translation - meeting.sweep_a.translation) +
+                    a.extent * length(meeting.sweep_a.turn) +
+                    b.extent * length(meeting.sweep_b.turn);
+  if (kind != ShapeKind::kHalfSpace && way > a.thickness + b.thickness) return false;
+  const float end = distance_at(state, meeting, 1.0f);
+  if (end > -tolerance) return true;
+  return end > min(distance_at(state, meeting, 0.0f), 0.0f) - tolerance;
 }
 
 /// The fraction of the tick at which two shapes meet that did not touch at its start; 1 where they
@@ -102,13 +144,17 @@ static float fraction_of(const StepContext<D>& context, const WorldState<D>& sta
   if (a.kind == ShapeKind::kHalfSpace ? stays_above(from, a, to, reach)
                                       : stays_clear(from, to, reach))
     return 1.0f;
-  const BodySweep<D> sweep_a = sweep_of(context, state, scratch, a.body);
-  const BodySweep<D> sweep_b = sweep_of(context, state, scratch, b.body);
-  const float tolerance = 0.25f * target;
-  if (has_contact(scratch, shape_a, shape_b) &&
-      contacts_hold(state, a, sweep_a, b, sweep_b, tolerance))
+  if (a.kind != ShapeKind::kHalfSpace &&
+      (stays_beside(context, a, from, to, to.start.extent + target) ||
+       stays_beside(context, b, to, from, from.start.extent + target)))
     return 1.0f;
-  const Impact impact = time_of_impact(a, sweep_a, b, sweep_b, target, tolerance, state.polyhedra);
+  const Meeting<D> meeting{a, b, sweep_of(context, state, scratch, a.body),
+                           sweep_of(context, state, scratch, b.body)};
+  const float tolerance = 0.25f * target;
+  if (has_contact(scratch, shape_a, shape_b) && contacts_hold(state, meeting, tolerance))
+    return 1.0f;
+  const Impact impact =
+      time_of_impact(a, meeting.sweep_a, b, meeting.sweep_b, target, tolerance, state.polyhedra);
   return impact.hit && impact.fraction > 0.0f ? impact.fraction : 1.0f;
 }
 
