@@ -40,17 +40,22 @@ template <class T>
   return select(q[3] < T(0.0f), T(2.0f * kPi), T(3.2f) * sine + T(1.0e-5f));
 }
 
+/// By how much at most the way of a point, m, leaves its chord as seen from a body that turns by
+/// `turn`, rad: an eighth of its greatest acceleration (w^2 r across, 2 w v along). It starts at
+/// the distance `from` and goes `size`, m.
+template <class T>
+[[gnu::always_inline]] inline T bulge_of(T turn, T from, T size) {
+  return T(0.125f) * turn * (turn * (from + size) + T(2.0f) * size);
+}
+
 /// The farthest that a point of b may move past a in the tick, m, seen from a, which turns: the
-/// centre of b along a curve that leaves its chord by at most an eighth of its greatest
-/// acceleration (w^2 r across, 2 w v along), and b by its turn less that of a. @pre neither winds.
+/// centre of b along a curve, and b by its turn less that of a. @pre neither winds.
 template <int D, class T>
 [[gnu::always_inline]] inline T way_past(const PassingBody<D, T>& a, const PassingBody<D, T>& b) {
   const Vec<D, T> from = b.position - a.position;
   const Vec<D, T> way = b.delta_position - a.delta_position;
   const Vec<D, T> seen = rotate_back(a.delta_rotation, from + way) - from;
-  const T turn = turn_bound(a.delta_rotation);
-  const T size = length(way);
-  const T bulge = T(0.125f) * turn * (turn * (length(from) + size) + T(2.0f) * size);
+  const T bulge = bulge_of(turn_bound(a.delta_rotation), length(from), length(way));
   const Rotation<D, T> relative = compose(conjugate(a.delta_rotation), b.delta_rotation);
   return length(seen) + bulge + b.extent * turn_bound(relative);
 }

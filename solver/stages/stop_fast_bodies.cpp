@@ -49,8 +49,8 @@ static bool stays_above(const Traveller<D>& ground, const Shape<D>& half_space,
 }
 
 /// Whether the centre of a body stays farther than its reach beside the box of a long shape, as
-/// seen from that shape's body, which turns; it leaves the chord of its way there by as much as in
-/// `way_past`. Of those near a bar that turns fast most do. @pre neither is a half-space.
+/// seen from that shape's body, which turns; it leaves the chord of its way there by `bulge_of`.
+/// Of those near a bar that turns fast most do. @pre neither is a half-space.
 template <int D>
 static bool stays_beside(const StepContext<D>& context, const Shape<D>& shape,
                          const Traveller<D>& bar, const Traveller<D>& other, float reach) {
@@ -58,9 +58,7 @@ static bool stays_beside(const StepContext<D>& context, const Shape<D>& shape,
   if (bar.start.extent < kLong * bar.start.thickness || winds(context, bar.motion)) return false;
   const Vec<D> from = other.start.position - bar.start.position;
   const Vec<D> way = other.motion.delta_position - bar.motion.delta_position;
-  const float turn = turn_bound(bar.motion.delta_rotation);
-  const float size = length(way);
-  const float bulge = 0.125f * turn * (turn * (length(from) + size) + 2.0f * size);
+  const float bulge = bulge_of(turn_bound(bar.motion.delta_rotation), length(from), length(way));
   const Vec<D> begin = rotate_back(bar.start.rotation, from);
   const Vec<D> end =
       rotate_back(bar.start.rotation, rotate_back(bar.motion.delta_rotation, from + way));

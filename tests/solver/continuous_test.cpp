@@ -110,18 +110,24 @@ TEST(Continuous, ItDoesNotHoldWhatSlidesOrRolls) {
   EXPECT_NEAR(view(world, id).position[0], 300.0f, 0.5f);
 }
 
+/// A smooth bar of 6 m about the origin that a hand turns.
+static World<2> bar_that_turns(std::uint32_t continuous, float spin) {
+  WorldDef<2> def = restless();
+  def.tuning.continuous = continuous;
+  def.materials = {{0.0f, 0.0f, 0.0f}};
+  World<2> world = make_world(def);
+  BodyDef<2> bar;
+  bar.kind = BodyKind::kKinematic;
+  bar.spin = {{spin}};
+  add(world, bar, box(3.0f, 0.1f));
+  return world;
+}
+
 // A bar swings a ball round, which slides outwards on it: what the contact solver has made of the
 // two is the way that they go.
 TEST(Continuous, ItDoesNotHoldWhatTouchesAndTurns) {
   const auto end = [](std::uint32_t continuous, float out) {
-    WorldDef<2> def = restless();
-    def.tuning.continuous = continuous;
-    def.materials = {{0.0f, 0.0f, 0.0f}};
-    World<2> world = make_world(def);
-    BodyDef<2> bar;
-    bar.kind = BodyKind::kKinematic;
-    bar.spin = {{0.25f}};
-    add(world, bar, box(3.0f, 0.1f));
+    World<2> world = bar_that_turns(continuous, 0.25f);
     BodyDef<2> slider;
     slider.position = {{1.0f, 0.3005f}};
     slider.velocity = {{out, 0.26f}};
@@ -142,14 +148,7 @@ struct Rider {
 };
 
 static Vec<2> end_of_ride(const Rider& rider, std::uint32_t continuous) {
-  WorldDef<2> def = restless();
-  def.tuning.continuous = continuous;
-  def.materials = {{0.0f, 0.0f, 0.0f}};
-  World<2> world = make_world(def);
-  BodyDef<2> bar;
-  bar.kind = BodyKind::kKinematic;
-  bar.spin = {{rider.bar_spin}};
-  add(world, bar, box(3.0f, 0.1f));
+  World<2> world = bar_that_turns(continuous, rider.bar_spin);
   BodyDef<2> moving;
   moving.position = {{rider.x, 0.3f - rider.overlap}};
   moving.rotation = rotation_by(Spin<2>{{rider.tilt}});
