@@ -64,6 +64,10 @@ struct RawLanes<kAvx512Lanes> : RawLanes<16> {};
 ///
 /// Aligned by hand: GCC aligns a vector to no more than the unit's own instruction set asks for,
 /// and units of several sets work on the same blocks.
+///
+/// Always inlined: with AVX a vector is passed in other registers, and the linker would keep one
+/// copy of a function for the units of all sets. What counts branches (-fprofile-generate) left one
+/// operator as a call, and each run gave other bits.
 template <int W>
 struct alignas(4 * kLaneCount<W>) Lanes {
   using Raw = typename RawLanes<W>::Float;
@@ -71,28 +75,29 @@ struct alignas(4 * kLaneCount<W>) Lanes {
   Raw raw;
 
   Lanes() = default;
-  explicit Lanes(Raw r) : raw(r) {}
-  Lanes(float x) : raw(x - Raw{}) {}  // NOLINT: the same in every lane; 0 + x would lose -0.
+  [[gnu::always_inline]] explicit Lanes(Raw r) : raw(r) {}
+  [[gnu::always_inline]] Lanes(float x)
+      : raw(x - Raw{}) {}  // NOLINT: the same in every lane; 0 + x would lose -0.
 
-  static Lanes load(const float* from) {
+  [[gnu::always_inline]] static Lanes load(const float* from) {
     Lanes lanes;
     std::memcpy(&lanes.raw, from, sizeof lanes.raw);
     return lanes;
   }
-  void store(float* to) const { std::memcpy(to, &raw, sizeof raw); }
+  [[gnu::always_inline]] void store(float* to) const { std::memcpy(to, &raw, sizeof raw); }
 
-  friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.raw + b.raw); }
-  friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.raw - b.raw); }
-  friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.raw * b.raw); }
-  friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.raw / b.raw); }
-  friend Lanes operator-(Lanes a) { return Lanes(-a.raw); }
-  Lanes& operator+=(Lanes b) { return *this = *this + b; }
-  Lanes& operator-=(Lanes b) { return *this = *this - b; }
+  [[gnu::always_inline]] friend Lanes operator+(Lanes a, Lanes b) { return Lanes(a.raw + b.raw); }
+  [[gnu::always_inline]] friend Lanes operator-(Lanes a, Lanes b) { return Lanes(a.raw - b.raw); }
+  [[gnu::always_inline]] friend Lanes operator*(Lanes a, Lanes b) { return Lanes(a.raw * b.raw); }
+  [[gnu::always_inline]] friend Lanes operator/(Lanes a, Lanes b) { return Lanes(a.raw / b.raw); }
+  [[gnu::always_inline]] friend Lanes operator-(Lanes a) { return Lanes(-a.raw); }
+  [[gnu::always_inline]] Lanes& operator+=(Lanes b) { return *this = *this + b; }
+  [[gnu::always_inline]] Lanes& operator-=(Lanes b) { return *this = *this - b; }
 
-  friend Mask operator<(Lanes a, Lanes b) { return a.raw < b.raw; }
-  friend Mask operator>(Lanes a, Lanes b) { return a.raw > b.raw; }
-  friend Mask operator==(Lanes a, Lanes b) { return a.raw == b.raw; }
-  friend Lanes max(Lanes a, Lanes b) {
+  [[gnu::always_inline]] friend Mask operator<(Lanes a, Lanes b) { return a.raw < b.raw; }
+  [[gnu::always_inline]] friend Mask operator>(Lanes a, Lanes b) { return a.raw > b.raw; }
+  [[gnu::always_inline]] friend Mask operator==(Lanes a, Lanes b) { return a.raw == b.raw; }
+  [[gnu::always_inline]] friend Lanes max(Lanes a, Lanes b) {
 #ifdef CYCLOID_AVX512_UNIT
     // Is that select: where neither is greater it takes the second. Against a constant GCC 12 makes
     // a mask of it, which takes three times as long.
@@ -101,17 +106,17 @@ struct alignas(4 * kLaneCount<W>) Lanes {
 #endif
     return Lanes(a.raw > b.raw ? a.raw : b.raw);
   }
-  friend Lanes min(Lanes a, Lanes b) {
+  [[gnu::always_inline]] friend Lanes min(Lanes a, Lanes b) {
 #ifdef CYCLOID_AVX512_UNIT
     if constexpr (W == kAvx512Lanes)
       return Lanes(static_cast<Raw>(_mm512_maskz_min_ps(0xffff, a.raw, b.raw)));
 #endif
     return Lanes(a.raw < b.raw ? a.raw : b.raw);
   }
-  friend Lanes select(Mask mask, Lanes yes, Lanes no) {
+  [[gnu::always_inline]] friend Lanes select(Mask mask, Lanes yes, Lanes no) {
     return Lanes(mask ? yes.raw : no.raw);
   }
-  friend Lanes sqrt(Lanes a) {
+  [[gnu::always_inline]] friend Lanes sqrt(Lanes a) {
 #ifdef CYCLOID_AVX512_UNIT
     // Compiled without the vectoriser, which elsewhere makes one instruction of the loop. Masked,
     // because GCC 12 warns of what the other one leaves undefined.

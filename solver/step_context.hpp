@@ -87,8 +87,9 @@ enum class Sweep { kBiased, kRelax, kPseudo };
 /// beginning alike, thirty boxes on one another sway at 10 mm/s for ever. The relax sweep goes
 /// against the biased one: if both turn together, cards that lean on one another slide.
 template <int D>
-std::uint32_t point_in_turn(const StepContext<D>& context, Sweep sweep, std::uint32_t i,
-                            std::uint32_t count) {
+[[gnu::always_inline]] inline std::uint32_t point_in_turn(const StepContext<D>& context,
+                                                          Sweep sweep, std::uint32_t i,
+                                                          std::uint32_t count) {
   const bool backwards = context.odd != (sweep == Sweep::kRelax);
   return backwards ? count - 1 - i : i;
 }
