@@ -45,6 +45,12 @@ struct ReplayOptions {
 /// Steps the scene by the frames and compares the digest of every tick, and the state of every
 /// keyframe byte by byte; stops at the first that differs.
 Replayed replay(const LoadedLog& loaded, const ReplayOptions& options);
+/// The same in up to `jobs` threads, each with a part between two of the log's keyframes: from the
+/// state of the first, to that of the second. So that the log is good if all parts are: the replay
+/// of each ends, byte by byte, in the state with which the next one begins.
+/// @pre options.on_tick is empty: parts would call it in any order.
+/// @returns what `replay` returns, of the parts up to the first that does not hold.
+Replayed replay_in_parts(const LoadedLog& loaded, const ReplayOptions& options, int jobs);
 /// The same, with a simulation that was just made of the log's scene, and is then where it stopped.
 Replayed replay(const LoadedLog& loaded, const ReplayOptions& options,
                 scenes::Simulation& simulation);

@@ -70,14 +70,21 @@ void judge_end(const LoadedLog& loaded, bool allow_open, Verdict& verdict) {
 
 using Deadline = std::optional<std::chrono::steady_clock::time_point>;
 
-void verify_log(const std::string& file, const VerifyOptions& options, const Deadline& deadline,
-                Verdict& verdict) {
+/// How a file is verified: in as many threads as `jobs`.
+struct Verifying {
+  const VerifyOptions& options;
+  Deadline deadline;
+  int jobs = 1;
+};
+
+void verify_log(const std::string& file, const Verifying& how, Verdict& verdict) {
+  const VerifyOptions& options = how.options;
   const LoadedLog loaded = load_log(file, options.loading);
   ReplayOptions replaying;
   replaying.workers = options.workers;
   replaying.lanes = options.lanes;
-  replaying.deadline = deadline;
-  const Replayed replayed = replay(loaded, replaying);
+  replaying.deadline = how.deadline;
+  const Replayed replayed = replay_in_parts(loaded, replaying, how.jobs);
   verdict.ticks = replayed.ticks;
   if (replayed.divergence) {
     verdict.exit = kExitDiverged;
@@ -91,18 +98,17 @@ void verify_log(const std::string& file, const VerifyOptions& options, const Dea
   }
 }
 
-Verdict verdict_on(const std::string& file, const VerifyOptions& options,
-                   const Deadline& deadline) {
+Verdict verdict_on(const std::string& file, const Verifying& how) {
   using Clock = std::chrono::steady_clock;
   Verdict verdict;
   verdict.name = file;
   const auto start = Clock::now();
   try {
-    if (deadline && start >= *deadline) {
+    if (how.deadline && start >= *how.deadline) {
       verdict.exit = kExitTimeout;
       verdict.text = "out of time before it was begun";
     } else {
-      verify_log(file, options, deadline, verdict);
+      verify_log(file, how, verdict);
     }
   } catch (const Failure& failure) {  // One bad log must not hide the verdict on the others.
     verdict.exit = failure.exit;
@@ -116,15 +122,16 @@ Verdict verdict_on(const std::string& file, const VerifyOptions& options,
 Exit verify_logs(const VerifyOptions& options, bool json) {
   using Clock = std::chrono::steady_clock;
   const std::vector<std::string> files = part_of(logs_of(options.paths), options.shard);
-  Deadline deadline;
+  const std::size_t jobs_each =
+      static_cast<std::size_t>(options.jobs) / std::max<std::size_t>(files.size(), 1);
+  Verifying how{options, {}, std::max(static_cast<int>(jobs_each), 1)};
   if (options.timeout_s > 0.0) {
-    deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
-                                  std::chrono::duration<double>(options.timeout_s));
+    how.deadline = Clock::now() + std::chrono::duration_cast<Clock::duration>(
+                                      std::chrono::duration<double>(options.timeout_s));
   }
   Report report{"cycloid verify", "log", std::vector<Verdict>(files.size())};
-  side_by_side(files.size(), options.jobs, [&](std::size_t i) {
-    report.verdicts[i] = verdict_on(files[i], options, deadline);
-  });
+  side_by_side(files.size(), options.jobs,
+               [&](std::size_t i) { report.verdicts[i] = verdict_on(files[i], how); });
   return publish(report, options.report, json);
 }
 
@@ -148,7 +155,9 @@ void add_verify(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   add_lanes_option(command, options->lanes);
-  command->add_option("--jobs", options->jobs, "Logs side by side")
+  command
+      ->add_option("--jobs", options->jobs,
+                   "Threads: logs side by side, and of fewer logs their parts between keyframes")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));
   add_report_options(command, options->report);
