@@ -264,7 +264,7 @@ TEST_F(LogCommand, AKeyframeThatIsNotTheStateIsADivergence) {
     encoder.tick(tick, bytes);
     if (tick.frame.tick == 30) encoder.keyframe(tick.digest, protocol::Bytes(50), bytes);
   }
-  write_text(log_, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  write_bytes(log_, bytes);
   const Ran verify = run_program({"verify", log_, "--allow-open"});
   EXPECT_EQ(verify.exit, 1);
   EXPECT_THAT(verify.out, HasSubstr("diverged at tick 30: the keyframe"));

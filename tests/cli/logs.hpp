@@ -1,6 +1,7 @@
 #pragma once
 
 #include <functional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -10,7 +11,12 @@
 
 namespace cycloid::cli {
 
-/// Reads a log, lets `change` have its way with it, and writes it again with checks that fit.
+inline void write_bytes(const std::string& file, const protocol::Bytes& bytes) {
+  write_text(file, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+}
+
+/// Reads a log, lets `change` have its way with it, and writes it again with checks that fit. The
+/// keyframes are left out.
 inline void rewrite_log(const std::string& from, const std::string& to,
                         const std::function<void(protocol::Log&)>& change) {
   const std::string text = read_text(from);
@@ -21,7 +27,39 @@ inline void rewrite_log(const std::string& from, const std::string& to,
   protocol::LogEncoder encoder(log.header, bytes);
   for (const protocol::LogTick& tick : log.ticks) encoder.tick(tick, bytes);
   if (log.footer) encoder.footer(*log.footer, bytes);
-  write_text(to, std::string(reinterpret_cast<const char*>(bytes.data()), bytes.size()));
+  write_bytes(to, bytes);
+}
+
+/// What may be done to the records of a log, in their order.
+struct RecordChanges {
+  std::function<void(protocol::LogTick&)> tick = [](protocol::LogTick&) {};
+  std::function<void(protocol::LogKeyframe&)> keyframe = [](protocol::LogKeyframe&) {};
+};
+
+/// Writes a whole log again, with its keyframes, with checks and a footer that fit.
+inline void rewrite_records(const std::string& file, const RecordChanges& change) {
+  const std::string text = read_text(file);
+  const auto read = std::as_bytes(std::span(text));
+  const protocol::LogSummary log = protocol::scan_log(read);
+  protocol::LogFooter footer = log.footer.value();
+  protocol::Bytes bytes;
+  protocol::LogEncoder encoder(log.header, bytes);
+  protocol::LogCursor cursor(read, log.start);
+  using Step = protocol::LogCursor::Step;
+  for (Step step = cursor.next(); step != Step::kEnd; step = cursor.next()) {
+    if (step == Step::kTick) {
+      protocol::LogTick tick = cursor.tick();
+      change.tick(tick);
+      encoder.tick(tick, bytes);
+      footer.digest = tick.digest;
+    } else if (step == Step::kKeyframe) {
+      protocol::LogKeyframe keyframe = cursor.keyframe();
+      change.keyframe(keyframe);
+      encoder.keyframe(keyframe.digest, keyframe.state, bytes);
+    }
+  }
+  encoder.footer(footer, bytes);
+  write_bytes(file, bytes);
 }
 
 }  // namespace cycloid::cli

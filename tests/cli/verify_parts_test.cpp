@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <filesystem>
+
 #include "scenes/simulation.hpp"
 #include "tests/cli/logs.hpp"
 #include "tests/cli/program.hpp"
@@ -8,7 +10,6 @@
 namespace cycloid::cli {
 namespace {
 
-using protocol::LogCursor;
 using testing::HasSubstr;
 
 constexpr std::uint64_t kTicks = 120;
@@ -20,35 +21,6 @@ class VerifyInParts : public testing::Test {
     const Ran ran = run_program({"run", "half-pipe", "--ticks", std::to_string(kTicks),
                                  "--keyframe-every", "20", "--log", log_});
     EXPECT_EQ(ran.exit, 0) << ran.err;
-  }
-
-  /// Writes the log again, every tick and keyframe as the two leave it.
-  void rewrite(const std::function<void(protocol::LogTick&)>& change_tick,
-               const std::function<void(protocol::LogKeyframe&)>& change_keyframe) {
-    const std::string text = read_text(log_);
-    const auto bytes = std::as_bytes(std::span(text));
-    const protocol::LogSummary log = protocol::scan_log(bytes);
-    protocol::Bytes written;
-    protocol::LogEncoder encoder(log.header, written);
-    protocol::LogFooter footer = *log.footer;
-    LogCursor cursor(bytes, log.start);
-    for (auto step = cursor.next(); step != LogCursor::Step::kEnd; step = cursor.next()) {
-      if (step == LogCursor::Step::kTick) {
-        protocol::LogTick tick = cursor.tick();
-        change_tick(tick);
-        encoder.tick(tick, written);
-        footer.digest = tick.digest;
-      } else if (step == LogCursor::Step::kKeyframe) {
-        protocol::LogKeyframe keyframe = cursor.keyframe();
-        change_keyframe(keyframe);
-        encoder.keyframe(keyframe.digest, keyframe.state, written);
-      }
-    }
-    encoder.footer(footer, written);
-    const auto out = std::as_writable_bytes(std::span(written));
-    std::string as_text(out.size(), ' ');
-    std::memcpy(as_text.data(), out.data(), out.size());
-    write_text(log_, as_text);
   }
 
   /// What verify says with one thread, which is what it says with more.
@@ -66,8 +38,6 @@ class VerifyInParts : public testing::Test {
   std::string log_;
 };
 
-void leave(const protocol::LogKeyframe&) {}
-
 TEST_F(VerifyInParts, AGoodLogIsGoodInAnyNumberOfThem) {
   const Ran ran = verify();
   EXPECT_EQ(ran.exit, 0);
@@ -75,11 +45,9 @@ TEST_F(VerifyInParts, AGoodLogIsGoodInAnyNumberOfThem) {
 }
 
 TEST_F(VerifyInParts, TheFirstTickThatDiffersIsNamedWhicheverPartMeetsOne) {
-  rewrite(
-      [](protocol::LogTick& tick) {
-        if (tick.frame.tick == 37 || tick.frame.tick == 93) tick.digest ^= 1;
-      },
-      leave);
+  rewrite_records(log_, {.tick = [](protocol::LogTick& tick) {
+                    if (tick.frame.tick == 37 || tick.frame.tick == 93) tick.digest ^= 1;
+                  }});
   const Ran ran = verify();
   EXPECT_EQ(ran.exit, 1);
   EXPECT_THAT(ran.out, HasSubstr("diverged at tick 37: recorded "));
@@ -100,22 +68,21 @@ TEST_F(VerifyInParts, AStateThatWasNotReachedIsFoundThoughAllThatFollowsFitsIt) 
     ASSERT_TRUE(world.step(inputs).ok());
     if (!honest) tick.digest = world.digest();
   };
-  rewrite(step, [&](protocol::LogKeyframe& keyframe) {
-    if (keyframe.tick < 60) return;
-    keyframe.state.clear();
-    world.encode(keyframe.state);
-    keyframe.digest = world.digest();
-  });
+  rewrite_records(log_, {step, [&](protocol::LogKeyframe& keyframe) {
+                           if (keyframe.tick < 60) return;
+                           keyframe.state.clear();
+                           world.encode(keyframe.state);
+                           keyframe.digest = world.digest();
+                         }});
   const Ran ran = verify();
   EXPECT_EQ(ran.exit, 1);
   EXPECT_THAT(ran.out, HasSubstr("diverged at tick 60: recorded "));
 }
 
 TEST_F(VerifyInParts, AStateOfNoSceneIsSaidToBeAnotherThanTheOneReached) {
-  rewrite([](const protocol::LogTick&) {},
-          [](protocol::LogKeyframe& keyframe) {
-            if (keyframe.tick == 80) keyframe.state.assign(9, std::byte{0});
-          });
+  rewrite_records(log_, {.keyframe = [](protocol::LogKeyframe& keyframe) {
+                    if (keyframe.tick == 80) keyframe.state.assign(9, std::byte{0});
+                  }});
   const Ran ran = verify();
   EXPECT_EQ(ran.exit, 1);
   EXPECT_THAT(ran.out, HasSubstr("diverged at tick 80: the keyframe in the log is not the state"));
@@ -124,7 +91,8 @@ TEST_F(VerifyInParts, AStateOfNoSceneIsSaidToBeAnotherThanTheOneReached) {
 TEST_F(VerifyInParts, SeveralLogsShareTheThreads) {
   const std::string other = folder_.file("other.cylog");
   std::filesystem::copy_file(log_, other);
-  rewrite([](protocol::LogTick& tick) { tick.digest ^= tick.frame.tick == 101 ? 1u : 0u; }, leave);
+  rewrite_records(log_,
+                  {.tick = [](protocol::LogTick& tick) { tick.digest ^= tick.frame.tick == 101; }});
   const Ran one = run_program({"verify", folder_.path()});
   EXPECT_THAT(one.out, HasSubstr("diverged at tick 101"));
   for (const char* jobs : {"2", "3", "5", "8"}) {
