@@ -2,7 +2,8 @@
 """Reads compiled objects: no fused multiply-add, no estimate, nothing imported outside a list, and
 no name shared with a unit that only some processors can run.
 
-    objects.py [--objdump PROGRAM] [--nm PROGRAM] [--imports FILE | --instructions-only] FILE...
+    objects.py [--objdump PROGRAM] [--nm PROGRAM]
+               [--imports FILE | --any-imports | --instructions-only] FILE...
 
 FILE is an archive, an object or a linked program of any processor of instructions.py. Imports are
 what no FILE defines. Exit status 0 when clean, 1 with one line for each finding, 2 when a file
@@ -204,13 +205,17 @@ def foreign_imports(listings: Iterable[tuple[str, str]], imports: Imports) -> li
     ]
 
 
+# Where code moves, GCC keeps the address of what unwinds in a variable of this name: one for all units.
+POINTER_OF_GCC = "DW.ref."
+
+
 def shared_names(listings: Iterable[tuple[str, str]]) -> list[str]:
     """One line for each name of a wide unit that another unit could use by accident."""
     definitions = [
         (member, name, units_of(member))
         for file, listing in listings
         for member, name, is_defined in names_by_member(listing, file)
-        if is_defined
+        if is_defined and not name.startswith(POINTER_OF_GCC)
     ]
     of_wide = {name: units for _, name, units in definitions if units is not None}
     findings = [
@@ -242,9 +247,12 @@ def judge(arguments: argparse.Namespace) -> tuple[list[str], str]:
     summary = f"{total} instructions in {len(arguments.files)} files"
     if arguments.instructions_only:
         return findings, summary
-    imports = read_imports(Path(arguments.imports).read_text(encoding="utf-8"))
     listings = [(file, output_of([arguments.nm, "-A", "-C", file])) for file in arguments.files]
-    findings += foreign_imports(listings, imports) + shared_names(listings)
+    findings += shared_names(listings)
+    if arguments.any_imports:
+        return findings, summary + ", and all names"
+    imports = read_imports(Path(arguments.imports).read_text(encoding="utf-8"))
+    findings += foreign_imports(listings, imports)
     return findings, summary + ", and all imports"
 
 
@@ -253,6 +261,7 @@ def main(words: list[str]) -> int:
     parser.add_argument("--objdump", default="objdump", help="of the target")
     parser.add_argument("--nm", default="nm", help="of the target")
     parser.add_argument("--imports", default=str(IMPORTS), help="the list of allowed imports")
+    parser.add_argument("--any-imports", action="store_true", help="for other compilers and flags")
     parser.add_argument("--instructions-only", action="store_true", help="for linked programs")
     parser.add_argument("files", nargs="+", metavar="FILE")
     try:

@@ -116,6 +116,7 @@ class Objects(Planted):
             status, text = self.gate(own, other)
             self.assertEqual(status, 1, text)
             self.assertIn(f"planted.o: defines K<{width}>::f(int)", text)
+            self.assertEqual(self.gate("--any-imports", own, other)[0], 1)
             narrow = self.compile(kernel + "template struct K<8>;\n" + shared)
             self.assertEqual(self.gate(own, narrow)[0], 0)
 
