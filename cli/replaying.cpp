@@ -31,13 +31,13 @@ LogCursor begin_at(const LoadedLog& loaded, std::uint64_t from, scenes::Simulati
   return cursor;
 }
 
-/// Steps once; what differs, or nothing.
+/// Steps once, and writes down the digest. @returns what differs, or nothing.
 std::optional<Divergence> step_by(const protocol::LogTick& tick, scenes::Simulation& simulation,
-                                  std::vector<scenes::SeatInput>& inputs) {
+                                  std::vector<scenes::SeatInput>& inputs, std::uint64_t& digest) {
   inputs.clear();
   for (const protocol::SeatFrame& seat : tick.frame.seats) inputs.push_back(seat.input);
   const solver::Error error = simulation.step(inputs);
-  const std::uint64_t digest = simulation.digest();
+  digest = simulation.digest();
   if (error.ok() && digest == tick.digest) return {};
   return Divergence{tick.frame.tick, tick.digest, digest, error.ok() ? "" : error_text(error),
                     false};
@@ -72,8 +72,7 @@ Replayed replay(const LoadedLog& loaded, const ReplayOptions& options,
     }
     if (step != LogStep::kTick) continue;
     if (cursor.tick().frame.tick > to) break;
-    result.divergence = step_by(cursor.tick(), simulation, inputs);
-    result.digest = simulation.digest();
+    result.divergence = step_by(cursor.tick(), simulation, inputs, result.digest);
     if (result.divergence) return result;
     ++result.ticks;
     if (options.on_tick) options.on_tick(result.tick(), result.digest);
