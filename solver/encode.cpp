@@ -9,7 +9,7 @@ namespace cycloid::solver {
 
 // "CYW" and the version of this encoding, then the dimension. Raise the version with any change of
 // what `visit` lists or of its order.
-static constexpr std::uint32_t kMagic = 0x03575943u;
+static constexpr std::uint32_t kMagic = 0x04575943u;
 
 template <int D>
 std::size_t encoded_bytes(const WorldState<D>& state) {

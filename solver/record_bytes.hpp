@@ -168,7 +168,7 @@ inline constexpr std::size_t kRecordsPerPeriod = 16;
 
 /// `float_words` of a period of records, one after the other.
 template <class R>
-inline constexpr auto kFloatWords = [] {
+alignas(64) inline constexpr auto kFloatWords = [] {
   std::array<std::uint32_t, kRecordsPerPeriod * kRecordWords<R>> words{};
   for (std::size_t i = 0; i < words.size(); ++i) words[i] = float_words<R>()[i % kRecordWords<R>];
   return words;

@@ -3,8 +3,6 @@
 #include <cstdint>
 #include <vector>
 
-#include "solver/shared_array.hpp"
-
 namespace cycloid::solver {
 
 /// The slot that the next record takes: the last freed, else a new one. Fails at the limit.
@@ -37,9 +35,14 @@ void free_slot(std::uint32_t index, std::vector<Record>& slots, std::vector<std:
   free.push_back(index);
 }
 
-template <class Record>
-void free_slot(std::uint32_t index, SharedArray<Record>& slots, std::vector<std::uint32_t>& free) {
-  slots.edit([&](std::vector<Record>& own) { free_slot(index, own, free); });
+/// Of arrays that are changed by edits.
+template <class Slots>
+std::uint32_t take_slot(Slots& slots, std::vector<std::uint32_t>& free) {
+  return slots.edit([&](auto& own) { return take_slot(own, free); });
+}
+template <class Slots>
+void free_slot(std::uint32_t index, Slots& slots, std::vector<std::uint32_t>& free) {
+  slots.edit([&](auto& own) { free_slot(index, own, free); });
 }
 
 }  // namespace cycloid::solver

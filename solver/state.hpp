@@ -1,11 +1,13 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <type_traits>
 #include <vector>
 
 #include "solver/definitions.hpp"
+#include "solver/moved_array.hpp"
 #include "solver/particles/particle.hpp"
 #include "solver/shared_array.hpp"
 #include "solver/solids/polyhedron.hpp"
@@ -38,20 +40,15 @@ enum FaultField : std::uint64_t {
 /// fields once, in `visit`, which encoding, decoding, digest and comparison all walk; a
 /// static_assert in visit.hpp fails when a field is left out.
 
+/// What no tick changes of a body.
 template <int D>
-struct Body {
+struct BodyProperties {
   std::uint32_t generation = 0;
   BodyKind kind = BodyKind::kFree;
   std::uint32_t fixed_rotation = 0;
   std::uint32_t first_shape = kNone;
   std::array<std::uint32_t, 2> tag{};
-  Vec<D> position;  ///< Centre of mass, world, m.
-  Rotation<D> rotation;
-  Vec<D> velocity;  ///< m/s.
-  Spin<D> spin;     ///< rad/s.
-  Vec<D> force;     ///< N, for the coming tick.
-  Spin<D> torque;   ///< N m.
-  float mass;       ///< kg; 0 for static and kinematic bodies.
+  float mass;  ///< kg; 0 for static and kinematic bodies.
   float inverse_mass;
   Inertia<D> inertia;          ///< Body frame.
   Inertia<D> inverse_inertia;  ///< Body frame; 0 where rotation is fixed.
@@ -59,11 +56,33 @@ struct Body {
   float linear_damping;
   float angular_damping;
   float gravity_scale;
-  float extent;              ///< Of the farthest point from the centre of mass, m.
-  float thickness;           ///< Radius of the largest ball in its thinnest shape, m.
+  float extent;     ///< Of the farthest point from the centre of mass, m.
+  float thickness;  ///< Radius of the largest ball in its thinnest shape, m.
+};
+
+/// What ticks move of a body.
+template <int D>
+struct BodyMotion {
+  Vec<D> position;  ///< Centre of mass, world, m.
+  Rotation<D> rotation;
+  Vec<D> velocity;           ///< m/s.
+  Spin<D> spin;              ///< rad/s.
+  Vec<D> force;              ///< N, for the coming tick.
+  Spin<D> torque;            ///< N m.
   std::uint32_t rest_ticks;  ///< Ticks below tuning.sleep_speed.
   std::uint32_t asleep;      ///< 1: left alone until something wakes its island.
 };
+
+template <int D>
+struct Body : BodyProperties<D>, BodyMotion<D> {
+  using Kept = BodyProperties<D>;
+  using Moved = BodyMotion<D>;
+};
+
+/// Where a body's motion begins in its record, in bytes: right behind its properties, which
+/// record_bytes.hpp asserts.
+template <int D>
+inline constexpr std::size_t kMotionAt = sizeof(BodyProperties<D>);
 
 /// Whether a body takes part in a tick by itself: it moves, and does not sleep. What moves a
 /// sleeping body (a force, a velocity) wakes it.
@@ -129,8 +148,9 @@ struct Contact {
   Spin<D> rolling_impulse;  ///< N m s.
 };
 
+/// What no tick changes of a joint.
 template <int D>
-struct Joint {
+struct JointProperties {
   std::uint32_t generation = 0;
   JointKind kind = JointKind::kFree;
   std::uint32_t body_a = kNone;
@@ -166,6 +186,11 @@ struct Joint {
   std::uint32_t user_kind;
   std::array<float, 4> parameters;
   std::uint32_t collide_connected;
+};
+
+/// What ticks change of a joint.
+template <int D>
+struct JointImpulses {
   std::array<float, 2> unwrapped;  ///< Gear: angles of a and b, whole turns counted, rad.
   std::array<float, Dim<D>::kFreedoms> impulse;  ///< Accumulated, of the equality rows, N s, N m s.
   float spring_impulse;
@@ -173,6 +198,12 @@ struct Joint {
   float lower_impulse;
   float upper_impulse;
   float cone_impulse;
+};
+
+template <int D>
+struct Joint : JointProperties<D>, JointImpulses<D> {
+  using Kept = JointProperties<D>;
+  using Moved = JointImpulses<D>;
 };
 
 template <int D>
@@ -192,12 +223,12 @@ template <int D>
 struct WorldState {
   WorldHeader<D> header;
   std::vector<Material> materials;
-  std::vector<Body<D>> bodies;
+  MovedArray<Body<D>> bodies;
   std::vector<std::uint32_t> free_bodies;
   SharedArray<Shape<D>> shapes;
   std::vector<std::uint32_t> free_shapes;
   Polyhedra polyhedra;
-  std::vector<Joint<D>> joints;
+  MovedArray<Joint<D>> joints;
   std::vector<std::uint32_t> free_joints;
   std::vector<Contact<D>> contacts;  ///< Sorted by (shape_a, shape_b).
   std::vector<std::uint32_t> registers;

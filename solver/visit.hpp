@@ -18,18 +18,12 @@ constexpr void visit_fields(R& r, F&& f, const Material*) {
 }
 
 template <class R, class F, int D>
-constexpr void visit_fields(R& r, F&& f, const Body<D>*) {
+constexpr void visit_fields(R& r, F&& f, const BodyProperties<D>*) {
   f("generation", r.generation);
   f("kind", r.kind);
   f("fixed_rotation", r.fixed_rotation);
   f("first_shape", r.first_shape);
   f("tag", r.tag);
-  f("position", r.position);
-  f("rotation", r.rotation);
-  f("velocity", r.velocity);
-  f("spin", r.spin);
-  f("force", r.force);
-  f("torque", r.torque);
   f("mass", r.mass);
   f("inverse_mass", r.inverse_mass);
   f("inertia", r.inertia);
@@ -40,8 +34,24 @@ constexpr void visit_fields(R& r, F&& f, const Body<D>*) {
   f("gravity_scale", r.gravity_scale);
   f("extent", r.extent);
   f("thickness", r.thickness);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const BodyMotion<D>*) {
+  f("position", r.position);
+  f("rotation", r.rotation);
+  f("velocity", r.velocity);
+  f("spin", r.spin);
+  f("force", r.force);
+  f("torque", r.torque);
   f("rest_ticks", r.rest_ticks);
   f("asleep", r.asleep);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Body<D>*) {
+  visit_fields(r, f, static_cast<const BodyProperties<D>*>(nullptr));
+  visit_fields(r, f, static_cast<const BodyMotion<D>*>(nullptr));
 }
 
 /// The part of a shape that is not the same in the plane and in space.
@@ -131,7 +141,7 @@ constexpr void visit_fields(R& r, F&& f, const Contact<D>*) {
 }
 
 template <class R, class F, int D>
-constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
+constexpr void visit_fields(R& r, F&& f, const JointProperties<D>*) {
   f("generation", r.generation);
   f("kind", r.kind);
   f("body_a", r.body_a);
@@ -167,6 +177,10 @@ constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
   f("user_kind", r.user_kind);
   f("parameters", r.parameters);
   f("collide_connected", r.collide_connected);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const JointImpulses<D>*) {
   f("unwrapped", r.unwrapped);
   f("impulse", r.impulse);
   f("spring_impulse", r.spring_impulse);
@@ -174,6 +188,12 @@ constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
   f("lower_impulse", r.lower_impulse);
   f("upper_impulse", r.upper_impulse);
   f("cone_impulse", r.cone_impulse);
+}
+
+template <class R, class F, int D>
+constexpr void visit_fields(R& r, F&& f, const Joint<D>*) {
+  visit_fields(r, f, static_cast<const JointProperties<D>*>(nullptr));
+  visit_fields(r, f, static_cast<const JointImpulses<D>*>(nullptr));
 }
 
 template <class R, class F, int D>
@@ -266,14 +286,14 @@ constexpr void visit(R& record, F&& f) {
   visit_fields(record, f, static_cast<const std::remove_const_t<R>*>(nullptr));
 }
 
-/// Calls f(name, array), where the array of a state that is not const becomes its own.
-template <class T, class F>
-void visit_shared(const SharedArray<T>& shared, const char* name, F&& f) {
-  f(name, shared);
+/// Calls f(name, array), where an array that is to be changed is edited.
+template <class Array, class F>
+void visit_edited(const Array& array, const char* name, F&& f) {
+  f(name, array);
 }
-template <class T, class F>
-void visit_shared(SharedArray<T>& shared, const char* name, F&& f) {
-  shared.edit([&](std::vector<T>& array) { f(name, array); });
+template <class Array, class F>
+void visit_edited(Array& array, const char* name, F&& f) {
+  array.edit([&](auto& items) { f(name, items); });
 }
 
 /// The arrays of a state in canonical order: f(object name, array). An array that is to be changed
@@ -281,21 +301,21 @@ void visit_shared(SharedArray<T>& shared, const char* name, F&& f) {
 template <class S, class F>
 void visit_arrays(S& state, F&& f) {
   f("material", state.materials);
-  f("body", state.bodies);
+  visit_edited(state.bodies, "body", f);
   f("free body", state.free_bodies);
-  visit_shared(state.shapes, "shape", f);
+  visit_edited(state.shapes, "shape", f);
   f("free shape", state.free_shapes);
   f("polyhedron", state.polyhedra.records);
   f("polyhedron vertex", state.polyhedra.vertices);
   f("polyhedron face", state.polyhedra.faces);
   f("polyhedron edge", state.polyhedra.edges);
-  f("joint", state.joints);
+  visit_edited(state.joints, "joint", f);
   f("free joint", state.free_joints);
   f("contact", state.contacts);
   f("register", state.registers);
   f("particle", state.particles);
   f("free particle", state.free_particles);
-  visit_shared(state.links, "link", f);
+  visit_edited(state.links, "link", f);
   f("free link", state.free_links);
   f("pin", state.pins);
   f("free pin", state.free_pins);

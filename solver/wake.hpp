@@ -9,8 +9,8 @@ namespace cycloid::solver {
 
 template <int D>
 void wake(WorldState<D>& state, std::uint32_t slot, ActiveBodies& active) {
-  state.bodies[slot].asleep = 0;
-  state.bodies[slot].rest_ticks = 0;
+  state.bodies.moved(slot).asleep = 0;
+  state.bodies.moved(slot).rest_ticks = 0;
   active.touch(slot);
 }
 

@@ -66,9 +66,24 @@ class Seats {
 /// time may both make it, and make the same.
 class KeptNumber {
  public:
+  KeptNumber() = default;
+  KeptNumber(const KeptNumber& other) : number_(other.load()) {}
+  /// What it was made of has gone with it.
+  KeptNumber(KeptNumber&& other) noexcept : number_(other.load()) { other.forget(); }
+  KeptNumber& operator=(const KeptNumber& other) {
+    number_.store(other.load(), std::memory_order_relaxed);
+    return *this;
+  }
+  KeptNumber& operator=(KeptNumber&& other) noexcept {
+    const std::uint64_t number = other.load();
+    other.forget();
+    number_.store(number, std::memory_order_relaxed);
+    return *this;
+  }
+
   template <class Make>
   std::uint64_t get(Make&& make) {
-    std::uint64_t number = number_.load(std::memory_order_relaxed);
+    std::uint64_t number = load();
     if (number != kNotMade) return number;
     number = make();
     number_.store(number, std::memory_order_relaxed);
@@ -78,6 +93,8 @@ class KeptNumber {
   void forget() { number_.store(kNotMade, std::memory_order_relaxed); }
 
  private:
+  std::uint64_t load() const { return number_.load(std::memory_order_relaxed); }
+
   static constexpr std::uint64_t kNotMade = 0;  // Were it made 0, it would be made each time.
   std::atomic<std::uint64_t> number_{kNotMade};
 };

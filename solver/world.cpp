@@ -132,9 +132,9 @@ void World<D>::restore(const WorldState<D>& from) {
 }
 
 template <int D>
-Body<D>& World<D>::touched(BodyId id) {
+BodyMotion<D>& World<D>::touched(BodyId id) {
   kept_->active_bodies.touch(id.index);
-  return state_.bodies[id.index];
+  return state_.bodies.moved(id.index);
 }
 
 template <int D>

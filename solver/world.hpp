@@ -217,7 +217,7 @@ class World {
   Error step_in_one_lane();
   Error check(BodyId id) const;
   /// The body, of which the next step asks whether it takes part. @pre check(id).
-  Body<D>& touched(BodyId id);
+  BodyMotion<D>& touched(BodyId id);
   Error check(JointId id) const;
 
   WorldState<D> state_;

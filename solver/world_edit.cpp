@@ -122,7 +122,7 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
     attach_shapes(shapes, index, state_.free_shapes, all, body);
     set_size(all, body);
   });
-  state_.bodies[index] = body;
+  state_.bodies.edit_one(index, [&](Body<D>& slot) { slot = body; });
   // A static body may be put where others sleep, and neither would look for the other.
   if (body.inverse_mass == 0.0f) wake_all(state_, kept_->active_bodies);
   note_change(state_, body, kept_->pair_cache);
@@ -165,9 +165,7 @@ Error World<D>::destroy_body(BodyId id) {
       s = next;
     }
   });
-  state_.bodies[id.index] = Body<D>{};
-  state_.bodies[id.index].generation = id.generation + 1;
-  state_.free_bodies.push_back(id.index);
+  free_slot(id.index, state_.bodies, state_.free_bodies);
   return {};
 }
 
@@ -263,7 +261,7 @@ Result<JointId> World<D>::create_joint(const JointDef<D>& def) {
   Joint<D> joint = joint_from(def, a, b);
   joint.generation = state_.joints[index].generation;
   take_rest_values(state_, joint);
-  state_.joints[index] = joint;
+  state_.joints.edit_one(index, [&](Joint<D>& slot) { slot = joint; });
   note_joint(state_, joint, kept_->pair_cache);
   wake_both(state_, joint, kept_->active_bodies);
   return JointId{index, joint.generation};
@@ -275,9 +273,7 @@ Error World<D>::destroy_joint(JointId id) {
   const Joint<D>& joint = state_.joints[id.index];
   note_joint(state_, joint, kept_->pair_cache);
   wake_both(state_, joint, kept_->active_bodies);
-  state_.joints[id.index] = Joint<D>{};
-  state_.joints[id.index].generation = id.generation + 1;
-  state_.free_joints.push_back(id.index);
+  free_slot(id.index, state_.joints, state_.free_joints);
   return {};
 }
 

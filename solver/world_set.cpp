@@ -21,8 +21,9 @@ static bool add_within(Vec<N>& sum, const Vec<N>& change, float bound) {
 template <int D>
 Error World<D>::apply_force(BodyId id, const Vec<D>& force_n) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = touched(id);
-  const Vec<D> answered = body.inverse_mass == 0.0f ? Vec<D>::zero() : force_n;
+  const BodyProperties<D>& kept = state_.bodies[id.index];
+  BodyMotion<D>& body = touched(id);
+  const Vec<D> answered = kept.inverse_mass == 0.0f ? Vec<D>::zero() : force_n;
   if (!within(force_n, kForceMax) || !add_within(body.force, answered, kForceMax))
     return invalid("force_n");
   return {};
@@ -31,8 +32,9 @@ Error World<D>::apply_force(BodyId id, const Vec<D>& force_n) {
 template <int D>
 Error World<D>::apply_torque(BodyId id, const Spin<D>& torque_n_m) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = touched(id);
-  const Spin<D> answered = body.inverse_mass == 0.0f ? Spin<D>::zero() : torque_n_m;
+  const BodyProperties<D>& kept = state_.bodies[id.index];
+  BodyMotion<D>& body = touched(id);
+  const Spin<D> answered = kept.inverse_mass == 0.0f ? Spin<D>::zero() : torque_n_m;
   if (!within(torque_n_m, kForceMax) || !add_within(body.torque, answered, kForceMax))
     return invalid("torque_n_m");
   return {};
@@ -41,9 +43,10 @@ Error World<D>::apply_torque(BodyId id, const Spin<D>& torque_n_m) {
 template <int D>
 Error World<D>::apply_impulse(BodyId id, const Vec<D>& impulse_n_s) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = touched(id);
+  const BodyProperties<D>& kept = state_.bodies[id.index];
+  BodyMotion<D>& body = touched(id);
   if (!within(impulse_n_s, kForceMax)) return invalid("impulse_n_s");
-  if (!add_within(body.velocity, body.inverse_mass * impulse_n_s, kSpeedMax))
+  if (!add_within(body.velocity, kept.inverse_mass * impulse_n_s, kSpeedMax))
     return invalid("impulse_n_s");
   return {};
 }
@@ -51,9 +54,10 @@ Error World<D>::apply_impulse(BodyId id, const Vec<D>& impulse_n_s) {
 template <int D>
 Error World<D>::apply_angular_impulse(BodyId id, const Spin<D>& impulse_n_m_s) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = touched(id);
+  const BodyProperties<D>& kept = state_.bodies[id.index];
+  BodyMotion<D>& body = touched(id);
   if (!within(impulse_n_m_s, kForceMax)) return invalid("impulse_n_m_s");
-  const Inertia<D> inverse = world_inertia(body.inverse_inertia, body.rotation);
+  const Inertia<D> inverse = world_inertia(kept.inverse_inertia, body.rotation);
   if (!add_within(body.spin, inverse * impulse_n_m_s, kSpinMax)) return invalid("impulse_n_m_s");
   return {};
 }
@@ -61,12 +65,13 @@ Error World<D>::apply_angular_impulse(BodyId id, const Spin<D>& impulse_n_m_s) {
 template <int D>
 Error World<D>::set_velocity(BodyId id, const Vec<D>& velocity, const Spin<D>& spin) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = touched(id);
+  const BodyProperties<D>& kept = state_.bodies[id.index];
+  BodyMotion<D>& body = touched(id);
   if (!within(velocity, kSpeedMax)) return invalid("velocity");
   if (!within(spin, kSpinMax)) return invalid("spin");
-  if (body.kind == BodyKind::kStatic) return invalid("body");
+  if (kept.kind == BodyKind::kStatic) return invalid("body");
   body.velocity = velocity;
-  if (body.fixed_rotation == 0) body.spin = spin;
+  if (kept.fixed_rotation == 0) body.spin = spin;
   return {};
 }
 
@@ -75,10 +80,10 @@ Error World<D>::set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& r
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(position, kPositionMax)) return invalid("position");
   if (!within(dot(rotation, rotation), 0.998f, 1.002f)) return invalid("rotation");
-  Body<D>& body = state_.bodies[id.index];
+  BodyMotion<D>& body = state_.bodies.moved(id.index);
   body.rotation = normalized_or(rotation, rotation);
-  body.position = position + rotate(body.rotation, body.local_center);
-  note_move(body, kept_->pair_cache);
+  body.position = position + rotate(body.rotation, state_.bodies[id.index].local_center);
+  note_move(state_.bodies[id.index], kept_->pair_cache);
   // Nobody looks for the pairs of two bodies that rest, so what may touch it now has to look.
   wake_all(state_, kept_->active_bodies);
   return {};
@@ -96,7 +101,7 @@ template <int D>
 Error World<D>::set_gravity_scale(BodyId id, float scale) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(scale, -1.0e3f, 1.0e3f)) return invalid("scale");
-  state_.bodies[id.index].gravity_scale = scale;
+  state_.bodies.edit_one(id.index, [&](Body<D>& body) { body.gravity_scale = scale; });
   wake(state_, id.index, kept_->active_bodies);
   return {};
 }
@@ -106,22 +111,25 @@ Error World<D>::set_damping(BodyId id, float linear, float angular) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(linear, 0.0f, 1.0e4f)) return invalid("linear");
   if (!within(angular, 0.0f, 1.0e4f)) return invalid("angular");
-  state_.bodies[id.index].linear_damping = linear;
-  state_.bodies[id.index].angular_damping = angular;
+  state_.bodies.edit_one(id.index, [&](Body<D>& body) {
+    body.linear_damping = linear;
+    body.angular_damping = angular;
+  });
   return {};
 }
 
 template <int D>
 Error World<D>::set_mass(BodyId id, float mass_kg) {
   if (const Error error = check(id); !error.ok()) return error;
-  Body<D>& body = state_.bodies[id.index];
-  if (body.inverse_mass == 0.0f) return invalid("body");
+  if (state_.bodies[id.index].inverse_mass == 0.0f) return invalid("body");
   if (!within(mass_kg, kMassMin, kMassMax)) return invalid("mass_kg");
-  const float scale = mass_kg / body.mass;
-  body.mass = mass_kg;
-  body.inverse_mass = 1.0f / mass_kg;
-  for (float& moment : body.inertia.m) moment *= scale;
-  for (float& moment : body.inverse_inertia.m) moment *= 1.0f / scale;
+  state_.bodies.edit_one(id.index, [&](Body<D>& body) {
+    const float scale = mass_kg / body.mass;
+    body.mass = mass_kg;
+    body.inverse_mass = 1.0f / mass_kg;
+    for (float& moment : body.inertia.m) moment *= scale;
+    for (float& moment : body.inverse_inertia.m) moment *= 1.0f / scale;
+  });
   wake(state_, id.index, kept_->active_bodies);
   return {};
 }
@@ -156,7 +164,7 @@ static bool is_drivable(const Joint<D>& joint) {
 template <int D>
 Error World<D>::set_motor(JointId id, bool enabled, float speed, float max) {
   if (const Error error = check(id); !error.ok()) return error;
-  Joint<D>& joint = state_.joints[id.index];
+  const Joint<D>& joint = state_.joints[id.index];
   if (enabled && !is_drivable(joint)) return invalid("enabled");
   if (!within(speed, -kSpinMax, kSpinMax)) return invalid("speed");
   if (!within(max, 0.0f, kForceMax)) return invalid("max");
@@ -164,37 +172,41 @@ Error World<D>::set_motor(JointId id, bool enabled, float speed, float max) {
   // Controls say this in every tick; only what changes wakes.
   if (joint.motor == motor && joint.motor_speed == speed && joint.motor_max == max) return {};
   wake_both(state_, joint, kept_->active_bodies);
-  joint.motor = motor;
-  joint.motor_speed = speed;
-  joint.motor_max = max;
+  state_.joints.edit_one(id.index, [&](Joint<D>& edited) {
+    edited.motor = motor;
+    edited.motor_speed = speed;
+    edited.motor_max = max;
+  });
   return {};
 }
 
 template <int D>
 Error World<D>::set_target(JointId id, float target, float max) {
   if (const Error error = check(id); !error.ok()) return error;
-  Joint<D>& joint = state_.joints[id.index];
+  const Joint<D>& joint = state_.joints[id.index];
   if (!is_drivable(joint) || joint.kind == JointKind::kWheel) return invalid("joint");
   if (!within(target, -kSizeMax, kSizeMax)) return invalid("target");
   if (!within(max, 0.0f, kForceMax)) return invalid("max");
   if (joint.motor == MotorKind::kPosition && joint.target == target && joint.motor_max == max)
     return {};
   wake_both(state_, joint, kept_->active_bodies);
-  joint.motor = MotorKind::kPosition;
-  joint.target = target;
-  joint.motor_max = max;
+  state_.joints.edit_one(id.index, [&](Joint<D>& edited) {
+    edited.motor = MotorKind::kPosition;
+    edited.target = target;
+    edited.motor_max = max;
+  });
   return {};
 }
 
 template <int D>
 Error World<D>::set_steering(JointId id, float angle) {
   if (const Error error = check(id); !error.ok()) return error;
-  Joint<D>& joint = state_.joints[id.index];
+  const Joint<D>& joint = state_.joints[id.index];
   if (joint.kind != JointKind::kWheel || Dim<D>::kSpin == 1) return invalid("joint");
   if (!within(angle, -kSteeringMax, kSteeringMax)) return invalid("angle");
   if (joint.steering == angle) return {};
   wake_both(state_, joint, kept_->active_bodies);
-  joint.steering = angle;
+  state_.joints.edit_one(id.index, [&](Joint<D>& edited) { edited.steering = angle; });
   return {};
 }
 
@@ -202,39 +214,44 @@ template <int D>
 Error World<D>::set_anchor(JointId id, const Vec<D>& anchor_a) {
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(anchor_a, kSizeMax)) return invalid("anchor_a");
-  Joint<D>& joint = state_.joints[id.index];
+  const Joint<D>& joint = state_.joints[id.index];
   wake_both(state_, joint, kept_->active_bodies);
-  joint.anchor_a = anchor_a - state_.bodies[joint.body_a].local_center;
+  const Vec<D> from_centre = anchor_a - state_.bodies[joint.body_a].local_center;
+  state_.joints.edit_one(id.index, [&](Joint<D>& edited) { edited.anchor_a = from_centre; });
   return {};
 }
 
 template <int D>
 Error World<D>::set_limits(JointId id, bool enabled, float lower, float upper) {
   if (const Error error = check(id); !error.ok()) return error;
-  Joint<D>& joint = state_.joints[id.index];
+  const Joint<D>& joint = state_.joints[id.index];
   if (enabled && !has_limits(joint.kind, Dim<D>::kSpin)) return invalid("enabled");
   const float bound = limit_max(joint.kind);
   if (!within(lower, -bound, bound)) return invalid("lower");
   if (!within(upper, lower, bound)) return invalid("upper");
   wake_both(state_, joint, kept_->active_bodies);
-  joint.limit_enabled = enabled ? 1 : 0;
-  joint.lower = lower;
-  joint.upper = upper;
+  state_.joints.edit_one(id.index, [&](Joint<D>& edited) {
+    edited.limit_enabled = enabled ? 1 : 0;
+    edited.lower = lower;
+    edited.upper = upper;
+  });
   return {};
 }
 
 template <int D>
 Error World<D>::set_spring(JointId id, float length, float hertz, float damping_ratio) {
   if (const Error error = check(id); !error.ok()) return error;
-  Joint<D>& joint = state_.joints[id.index];
+  const Joint<D>& joint = state_.joints[id.index];
   if (joint.kind != JointKind::kDistance) return invalid("joint");
   if (!within(length, kSizeMin, kSizeMax)) return invalid("length");
   if (!within(hertz, 0.0f, 1.0e5f)) return invalid("hertz");
   if (!within(damping_ratio, 0.0f, 1.0e3f)) return invalid("damping_ratio");
   wake_both(state_, joint, kept_->active_bodies);
-  joint.length = length;
-  joint.hertz = hertz;
-  joint.damping_ratio = damping_ratio;
+  state_.joints.edit_one(id.index, [&](Joint<D>& edited) {
+    edited.length = length;
+    edited.hertz = hertz;
+    edited.damping_ratio = damping_ratio;
+  });
   return {};
 }
 
@@ -249,8 +266,9 @@ static void scale_impulses(float scale, WorldState<D>& state) {
     }
     contact.rolling_impulse = scale * contact.rolling_impulse;
   }
-  for (Joint<D>& joint : state.joints) {
-    if (joint.kind == JointKind::kFree) continue;
+  for (std::size_t i = 0; i < state.joints.size(); ++i) {
+    if (state.joints[i].kind == JointKind::kFree) continue;
+    JointImpulses<D>& joint = state.joints.moved(i);
     for (float& impulse : joint.impulse) impulse *= scale;
     for (float* impulse : {&joint.spring_impulse, &joint.motor_impulse, &joint.lower_impulse,
                            &joint.upper_impulse, &joint.cone_impulse})

@@ -109,14 +109,15 @@ class RecordedRun final : public RivalRun<D> {
       float numbers[kNumbers];
       std::memcpy(numbers, bytes_.data() + tick_bytes * (tick - 1) + i * sizeof numbers,
                   sizeof numbers);
-      take(numbers, state_.bodies[i]);
+      take(numbers, state_.bodies[i].local_center, state_.bodies.moved(i));
     }
     return true;
   }
   const solver::WorldState<D>& state() const override { return state_; }
 
  private:
-  static void take(const float (&from)[kNumbers], solver::Body<D>& body) {
+  static void take(const float (&from)[kNumbers], const solver::Vec<D>& centre,
+                   solver::BodyMotion<D>& body) {
     if constexpr (solver::Dim<D>::kRotation == 2)
       body.rotation = {{from[6] * from[6] - from[5] * from[5], 2.0f * from[5] * from[6]}};
     else
@@ -125,7 +126,7 @@ class RecordedRun final : public RivalRun<D> {
       body.position[i] = from[i];
       body.velocity[i] = from[7 + i];
     }
-    body.position += rotate(body.rotation, body.local_center);
+    body.position += rotate(body.rotation, centre);
     for (int i = 0; i < solver::Dim<D>::kSpin; ++i)
       body.spin[i] = from[10 + (solver::Dim<D>::kSpin == 1 ? 2 : i)];
   }

@@ -64,9 +64,10 @@ void SimClient::disturb() {
   // The lowest bit of one velocity, of a body that can move.
   const auto flip = [&](auto& world) {
     auto state = world.state();
-    for (auto& body : state.bodies) {
-      if (body.inverse_mass == 0.0f) continue;
-      body.velocity[0] = std::bit_cast<float>(std::bit_cast<std::uint32_t>(body.velocity[0]) ^ 1u);
+    for (std::size_t i = 0; i < state.bodies.size(); ++i) {
+      if (state.bodies[i].inverse_mass == 0.0f) continue;
+      float& speed = state.bodies.moved(i).velocity[0];
+      speed = std::bit_cast<float>(std::bit_cast<std::uint32_t>(speed) ^ 1u);
       break;
     }
     world.restore(state);

@@ -125,9 +125,10 @@ template <int W>
 std::uint64_t BodyKernels<W>::moved_far(float tick_s, const Body<2>* bodies,
                                         const std::uint32_t* slots, int count,
                                         const Motion<2>* motions) {
-  constexpr int kExtentAt = offsetof(Body<2>, extent) / sizeof(float);
-  static_assert(offsetof(Body<2>, thickness) == offsetof(Body<2>, extent) + sizeof(float));
-  static_assert(sizeof(Body<2>) >= offsetof(Body<2>, extent) + sizeof(Quad));
+  constexpr int kExtentAt = offsetof(BodyProperties<2>, extent) / sizeof(float);
+  static_assert(offsetof(BodyProperties<2>, thickness) ==
+                offsetof(BodyProperties<2>, extent) + sizeof(float));
+  static_assert(sizeof(Body<2>) >= offsetof(BodyProperties<2>, extent) + sizeof(Quad));
   std::uint64_t far = 0;
   for (int begin = 0; begin < count; begin += kLaneCount<W>) {
     LaneIndices<W> in_lane;

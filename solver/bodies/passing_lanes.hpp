@@ -17,7 +17,7 @@ template <int D, int W>
     const Body<D>* bodies, const LaneIndices<W>& slots) {
   static_assert(BodyKind::kDynamic > BodyKind::kKinematic &&
                 BodyKind::kParticle > BodyKind::kKinematic);
-  constexpr int kKindAt = offsetof(Body<D>, kind) / sizeof(float);
+  constexpr int kKindAt = offsetof(BodyProperties<D>, kind) / sizeof(float);
   Lanes<W> columns[4];
   gather_floats<W>(bodies, slots, kKindAt, columns);
   typename Lanes<W>::Mask kinds;
@@ -30,10 +30,11 @@ template <int D, int W>
                                                                       const Motion<D>* motions,
                                                                       const LaneIndices<W>& slots) {
   using L = Lanes<W>;
-  constexpr int kPositionAt = offsetof(Body<D>, position) / sizeof(float);
-  constexpr int kExtentAt = offsetof(Body<D>, extent) / sizeof(float);
-  static_assert(offsetof(Body<D>, thickness) == offsetof(Body<D>, extent) + sizeof(float));
-  static_assert(sizeof(Body<D>) >= offsetof(Body<D>, extent) + sizeof(Quad));
+  constexpr int kPositionAt = (kMotionAt<D> + offsetof(BodyMotion<D>, position)) / sizeof(float);
+  constexpr int kExtentAt = offsetof(BodyProperties<D>, extent) / sizeof(float);
+  static_assert(offsetof(BodyProperties<D>, thickness) ==
+                offsetof(BodyProperties<D>, extent) + sizeof(float));
+  static_assert(sizeof(Body<D>) >= offsetof(BodyProperties<D>, extent) + sizeof(Quad));
   L place[4];
   L sizes[4];
   gather_floats<W>(bodies, slots, kPositionAt, place);

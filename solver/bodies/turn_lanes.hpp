@@ -24,11 +24,11 @@ template <int W>
 [[gnu::always_inline]] inline TurningBodies<W> gather_bodies(const Body<3>* bodies,
                                                              const LaneIndices<W>& slots) {
   using L = Lanes<W>;
-  constexpr int kRotationAt = offsetof(Body<3>, rotation) / sizeof(float);
-  constexpr int kInertiaAt = offsetof(Body<3>, inertia) / sizeof(float);
+  constexpr int kRotationAt = (kMotionAt<3> + offsetof(BodyMotion<3>, rotation)) / sizeof(float);
+  constexpr int kInertiaAt = offsetof(BodyProperties<3>, inertia) / sizeof(float);
   constexpr int kBoth = 18;  // Inertia and inverse inertia lie side by side.
-  static_assert(offsetof(Body<3>, inverse_inertia) ==
-                offsetof(Body<3>, inertia) + kBoth / 2 * sizeof(float));
+  static_assert(offsetof(BodyProperties<3>, inverse_inertia) ==
+                offsetof(BodyProperties<3>, inertia) + kBoth / 2 * sizeof(float));
   TurningBodies<W> in_lanes;
   L columns[4];
   gather_floats<W>(bodies, slots, kRotationAt, columns);

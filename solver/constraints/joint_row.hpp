@@ -193,8 +193,8 @@ inline bool has_cone(const JointRow<2>&) {
 inline bool has_cone(const JointRow<3>& row) {
   return row.rows.has_cone_axis;
 }
-inline void store_cone_impulse(const JointRow<2>&, Joint<2>&) {}
-inline void store_cone_impulse(const JointRow<3>& row, Joint<3>& joint) {
+inline void store_cone_impulse(const JointRow<2>&, JointImpulses<2>&) {}
+inline void store_cone_impulse(const JointRow<3>& row, JointImpulses<3>& joint) {
   joint.cone_impulse = row.cone_impulse;
 }
 inline void forget_cone_impulse(JointRow<2>&) {}

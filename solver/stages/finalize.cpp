@@ -37,7 +37,7 @@ class MotionBounds {
   /// Four floats at a time, for nearly all bodies are asked for nothing more. False wherever
   /// fault_of finds one.
   bool hold(const Body<D>& body, const Motion<D>& motion) const {
-    constexpr int kAt = offsetof(Body<D>, position) / sizeof(float);
+    constexpr int kAt = (kMotionAt<D> + offsetof(BodyMotion<D>, position)) / sizeof(float);
     constexpr int kDeltaAt = D + Dim<D>::kSpin;
     auto held = lies(load_floats(body, kAt) + load_floats(motion, kDeltaAt), position_);
     for (int quad = 0; quad < kPoseQuads<D>; ++quad)
@@ -83,7 +83,7 @@ Fault find_fault(const WorldState<D>& state, Workers& workers, const StepScratch
 }
 
 template <int D>
-static void take_motion(const Motion<D>& motion, Body<D>& body) {
+static void take_motion(const Motion<D>& motion, BodyMotion<D>& body) {
   body.force = Vec<D>::zero();
   body.torque = Spin<D>::zero();
   body.velocity = motion.velocity;
@@ -94,7 +94,7 @@ static void take_motion(const Motion<D>& motion, Body<D>& body) {
 
 template <int D>
 static void keep_impulses(const JointRow<D>& row, WorldState<D>& state) {
-  Joint<D>& joint = state.joints[row.joint];
+  JointImpulses<D>& joint = state.joints.moved(row.joint);
   for (int i = 0; i < Dim<D>::kFreedoms; ++i)
     joint.impulse[static_cast<std::size_t>(i)] = row.impulse[i];
   joint.spring_impulse = row.spring_impulse;
@@ -102,9 +102,10 @@ static void keep_impulses(const JointRow<D>& row, WorldState<D>& state) {
   joint.lower_impulse = row.lower_impulse;
   joint.upper_impulse = row.upper_impulse;
   store_cone_impulse(row, joint);
-  if (joint.kind != JointKind::kGear) return;
-  joint.unwrapped = {unwrapped_angle(state.bodies[joint.body_a].rotation, joint.unwrapped[0]),
-                     unwrapped_angle(state.bodies[joint.body_b].rotation, joint.unwrapped[1])};
+  const JointProperties<D>& kept = state.joints[row.joint];
+  if (kept.kind != JointKind::kGear) return;
+  joint.unwrapped = {unwrapped_angle(state.bodies[kept.body_a].rotation, joint.unwrapped[0]),
+                     unwrapped_angle(state.bodies[kept.body_b].rotation, joint.unwrapped[1])};
 }
 
 /// x' = x + dx, q' = dq q at unit length; the contacts and impulses of this tick become the
@@ -119,7 +120,7 @@ void finalize(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
   workers.parallel_for(static_cast<int>(awake.size()), kBodyGrain, [&](Range range) {
     for (int i = range.begin; i < range.end; ++i) {
       const std::uint32_t slot = awake[static_cast<std::size_t>(i)];
-      take_motion(scratch.motions[slot], state.bodies[slot]);
+      take_motion(scratch.motions[slot], state.bodies.moved(slot));
     }
   });
   workers.parallel_for(static_cast<int>(scratch.joint_rows.size()), kJointGrain, [&](Range range) {

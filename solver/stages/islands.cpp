@@ -162,14 +162,15 @@ void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
   list_awake(scratch);
 }
 
-/// Counts the ticks at rest. Whether a body has rested for long enough to fall asleep.
+/// Counts the ticks at rest. Whether a body of this extent has rested for long enough to fall
+/// asleep.
 template <int D>
-static bool rests_long(const StepContext<D>& context, Body<D>& body) {
+static bool rests_long(const StepContext<D>& context, float extent, BodyMotion<D>& body) {
   const float least = context.tuning.sleep_speed;
   // What flies is far above it, and needs no root to be seen.
   const bool flies = dot(body.velocity, body.velocity) > 2.0f * (least * least);
   const bool rested =
-      !flies && body.asleep == 0 && length(body.velocity) + body.extent * length(body.spin) < least;
+      !flies && body.asleep == 0 && length(body.velocity) + extent * length(body.spin) < least;
   body.rest_ticks = rested ? body.rest_ticks + 1 : 0;  // Who has just woken starts anew.
   body.asleep = 0;
   return static_cast<float>(body.rest_ticks) >= context.tuning.sleep_s / context.tick_s;
@@ -179,11 +180,11 @@ static bool rests_long(const StepContext<D>& context, Body<D>& body) {
 /// restless. @returns whether any has rested for long.
 template <int D>
 static bool any_rests(const StepContext<D>& context, std::span<const std::uint32_t> slots,
-                      Body<D>* bodies, std::uint8_t* restless) {
+                      MovedArray<Body<D>>& bodies, std::uint8_t* restless) {
   bool any = false;
   for (const std::uint32_t slot : slots) {
     if (bodies[slot].inverse_mass == 0.0f) continue;
-    const bool rests = rests_long(context, bodies[slot]);
+    const bool rests = rests_long(context, bodies[slot].extent, bodies.moved(slot));
     restless[slot] = rests ? 0 : 1;
     any = any || rests;
   }
@@ -238,7 +239,7 @@ void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D
   workers.parallel_for(static_cast<int>(scratch.awake_bodies.size()), kBodyGrain, [&](Range range) {
     const std::span<const std::uint32_t> slots(scratch.awake_bodies.data() + range.begin,
                                                scratch.awake_bodies.data() + range.end);
-    if (any_rests(context, slots, state.bodies.data(), restless.data())) resting.add(1);
+    if (any_rests(context, slots, state.bodies, restless.data())) resting.add(1);
   });
   if (resting.sum() == 0 || !(context.tuning.sleep_s > 0.0f)) return;
   join_resting(state, scratch);
@@ -246,7 +247,7 @@ void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D
     if (takes_part(i) && restless[i] != 0) restless[root_of(scratch.islands, i)] = 1;
   for (const std::uint32_t i : scratch.awake_bodies) {
     if (!takes_part(i) || restless[root_of(scratch.islands, i)] != 0) continue;
-    Body<D>& body = state.bodies[i];
+    BodyMotion<D>& body = state.bodies.moved(i);
     body.asleep = 1;
     body.velocity = Vec<D>::zero();
     body.spin = Spin<D>::zero();

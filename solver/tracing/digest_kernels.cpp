@@ -10,7 +10,7 @@ extern template struct DigestKernels<kAvx2Lanes>;
 extern template struct DigestKernels<kAvx512Lanes>;
 
 template <int W>
-static constexpr DigestFunctions kFunctionsOf{&DigestKernels<W>::update,
+static constexpr DigestFunctions kFunctionsOf{&DigestKernels<W>::whole, &DigestKernels<W>::update,
                                               &DigestKernels<W>::canonical_bytes};
 
 const DigestFunctions& digest_functions() {

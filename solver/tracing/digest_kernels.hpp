@@ -15,7 +15,9 @@ namespace cycloid::solver {
 /// digest_kernels_avx512.cpp.
 template <int W>
 struct DigestKernels {
-  /// XXH3's update.
+  /// XXH3 of all bytes at once.
+  static std::uint64_t whole(const std::byte* bytes, std::size_t size);
+  /// XXH3's update, by which it sees them in pieces.
   static void update(XXH3_state_t& state, const std::byte* bytes, std::size_t size);
   /// How many bytes of numbers, from the first on, are canonical as they are: no float of them is
   /// -0 or a NaN. Counted in whole periods of `floats`, of which the last may be cut short.
@@ -28,6 +30,7 @@ struct DigestKernels {
 
 /// The widest that this processor and this build have.
 struct DigestFunctions {
+  decltype(&DigestKernels<4>::whole) whole;
   decltype(&DigestKernels<4>::update) update;
   decltype(&DigestKernels<4>::canonical_bytes) canonical_bytes;
 };

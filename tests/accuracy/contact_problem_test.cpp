@@ -49,7 +49,7 @@ template <int D>
 static void expect_a_falling_box_to_be_wrong() {
   World<D> world = resting_box<D>();
   WorldState<D> state = world.state();
-  state.bodies[1].velocity[1] = -1.0f;
+  state.bodies.moved(1).velocity[1] = -1.0f;
   for (auto& point : state.contacts[0].points) point.normal_impulse = 0.0f;
   const ContactProblem<D> problem = contact_problem(state);
   double inverse = 0.0;
@@ -75,8 +75,8 @@ TEST(ContactProblem, OfAFallingBoxIsWrongInSpace) {
 TEST(ContactProblem, PushingWhatAlreadyPartsIsWork) {
   World<2> world = resting_box<2>();
   WorldState<2> state = world.state();
-  state.bodies[1].velocity = {{0.0f, 0.5f}};
-  state.bodies[1].spin = {{0.0f}};
+  state.bodies.moved(1).velocity = {{0.0f, 0.5f}};
+  state.bodies.moved(1).spin = {{0.0f}};
   double largest = 0.0;
   for (const auto& point : state.contacts[0].points)
     largest = std::max(largest, static_cast<double>(point.normal_impulse));
@@ -147,8 +147,8 @@ TEST(ContactProblem, UniqueImpulsesAreCompared) {
   const auto problem = contact_problem(state);
   EXPECT_NEAR(std::abs(problem.rows[1].impulse), weight, 1e-5 * weight);
   // A tenth less, and the weight falls by as much.
-  state.joints[0].impulse[1] *= 0.9f;
-  state.bodies[1].velocity[1] -= static_cast<float>(0.1 * weight / 3.0);
+  state.joints.moved(0).impulse[1] *= 0.9f;
+  state.bodies.moved(1).velocity[1] -= static_cast<float>(0.1 * weight / 3.0);
   errors = direct_errors(contact_problem(state), state, 80);
   ASSERT_TRUE(errors && errors->impulse);
   EXPECT_NEAR(*errors->impulse, 0.1, 1e-4);

@@ -62,7 +62,7 @@ TEST(Observer, TellsTransientFromSteady) {
   add_box(world, 0.0f, 0.4f);
   const WorldState<2> deep = world.state();
   WorldState<2> shallow = deep;
-  shallow.bodies[1].position[1] = 0.49f;
+  shallow.bodies.moved(1).position[1] = 0.49f;
   Observer<2> observer(deep, 100, false, {});
   for (std::uint32_t tick = 1; tick <= 100; ++tick)
     ASSERT_TRUE(observer.look(tick <= 50 ? deep : shallow, tick));
@@ -84,7 +84,7 @@ TEST(Observer, MeasuresGapsOfAChain) {
     pin.body_a = pin.body_b;
   }
   WorldState<2> state = world.state();
-  state.bodies[4].position[1] = 0.2f;
+  state.bodies.moved(4).position[1] = 0.2f;
   const Metrics metrics = watch(world.state(), state);
   ASSERT_TRUE(metrics.gap_steady_m.has_value());
   EXPECT_NEAR(metrics.gap_steady_m->max, 0.2, 1e-6);
@@ -96,11 +96,11 @@ TEST(Observer, SeesEnergyThatCameFromNowhere) {
   World<2> world = empty_world<2>();
   add_box(world, 0.0f, 0.0f, 2.0f);
   WorldState<2> state = world.state();
-  state.bodies[0].position[1] = -0.3f;
-  state.bodies[0].velocity[1] = -2.0f;
+  state.bodies.moved(0).position[1] = -0.3f;
+  state.bodies.moved(0).velocity[1] = -2.0f;
   // It has fallen 0.3 m of 2 kg, which is 6 J, but goes with 4 J: nothing gained.
   EXPECT_EQ(watch(world.state(), state).energy_gained_j, 0.0);
-  state.bodies[0].velocity[1] = -3.0f;
+  state.bodies.moved(0).velocity[1] = -3.0f;
   const Metrics metrics = watch(world.state(), state);
   EXPECT_NEAR(metrics.energy_gained_j, 3.0, 1e-5);
   EXPECT_NEAR(metrics.jitter_m_s, 3.0, 1e-6);
@@ -151,7 +151,7 @@ TEST(Observer, SeesMomentumThatCameFromNowhere) {
   add_box(world, -2.0f, 0.0f);
   add_box(world, 2.0f, 0.0f, 3.0f);
   WorldState<2> state = world.state();
-  state.bodies[0].velocity[1] = 2.0f;
+  state.bodies.moved(0).velocity[1] = 2.0f;
   const Metrics metrics = watch(world.state(), state);
   ASSERT_TRUE(metrics.momentum_drift && metrics.angular_momentum_drift);
   EXPECT_NEAR(*metrics.momentum_drift, 1.0, 1e-6) << "all of it is new";
@@ -164,7 +164,7 @@ TEST(Observer, SeesContactsThatCreep) {
   Observer<2> observer(world.state(), 120, false, options);
   WorldState<2> state = world.state();
   for (std::uint32_t tick = 1; tick <= 120; ++tick) {
-    state.bodies[1].position[0] += 0.001f;
+    state.bodies.moved(1).position[0] += 0.001f;
     ASSERT_TRUE(observer.look(state, tick));
   }
   const Metrics metrics = observer.finish(state);
@@ -189,7 +189,7 @@ TEST(Observer, SeesAWorldThatIsNoLongerFinite) {
   WorldState<2> state = world.state();
   Observer<2> observer(state, 10, false, {});
   EXPECT_TRUE(observer.look(state, 1));
-  state.bodies[1].velocity[0] = std::numeric_limits<float>::quiet_NaN();
+  state.bodies.moved(1).velocity[0] = std::numeric_limits<float>::quiet_NaN();
   EXPECT_FALSE(observer.look(state, 2));
 }
 

@@ -145,7 +145,8 @@ TEST(LoadedIslands, AStackOfThirtyStandsForAMinute) {
       fastest_square = std::max(fastest_square, dot(body.velocity, body.velocity));
   }
   EXPECT_LT(fastest_square, 0.005f * 0.005f) << "it leans further before it is caught";
-  const solver::Body<2>& top = stack.planar()->state().bodies.back();
+  const auto& bodies = stack.planar()->state().bodies;
+  const solver::Body<2>& top = bodies[bodies.size() - 1];
   EXPECT_NEAR(top.position[0], 0.0f, 0.5f);
   EXPECT_NEAR(top.position[1], 29.5f, 0.05f);
 }

@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <sstream>
 
+#include "solver/encoding.hpp"
+
 namespace cycloid::properties {
 
 void Played::add(const Played& other) {
@@ -113,6 +115,8 @@ class Pair {
     one_.world().encode(bytes);
     other_.world().encode(other_bytes);
     if (bytes != other_bytes) fail("the end", "equal digests, but other bits");
+    if (solver::digest_encoding(bytes) != one_.world().digest())
+      fail("the end", "the digest is not that of the state");
   }
 
   const Case& example_;

@@ -322,11 +322,12 @@ void Player<D>::damage() {
   if (flaw_ == Flaw::kNone) return;
   solver::WorldState<D> state = world_->state();
   if (flaw_ == Flaw::kLowestBit && !state.bodies.empty()) {
-    float& value = state.bodies.back().velocity[0];
+    float& value = state.bodies.moved(state.bodies.size() - 1).velocity[0];
     value = std::bit_cast<float>(std::bit_cast<std::uint32_t>(value) ^ 1u);
   }
   if (flaw_ == Flaw::kForgottenForces)
-    for (solver::Body<D>& body : state.bodies) body.force = solver::Vec<D>::zero();
+    for (std::size_t i = 0; i < state.bodies.size(); ++i)
+      state.bodies.moved(i).force = solver::Vec<D>::zero();
   if (flaw_ == Flaw::kFreeListReversed)
     std::reverse(state.free_bodies.begin(), state.free_bodies.end());
   if (flaw_ == Flaw::kForgottenMemory) state.contacts.clear();

@@ -49,7 +49,7 @@ class DesyncDeskTest : public testing::Test {
   /// One bit of the x of ball `body`, between two ticks.
   static void flip(scenes::Simulation& simulation, std::size_t body, int bit) {
     auto state = simulation.planar()->state();
-    float& x = state.bodies[body].position[0];
+    float& x = state.bodies.moved(body).position[0];
     x = std::bit_cast<float>(std::bit_cast<std::uint32_t>(x) ^ (1u << bit));
     simulation.planar()->restore(state);
   }

@@ -32,7 +32,7 @@ std::pair<std::size_t, std::uint32_t> flip_in(State& state, const Flip& flip) {
   };
   if (kind == "joint") {
     busiest(state.joints, [](const auto& joint) { return joint.impulse[0]; });
-    return {slot, flip_float(state.joints.at(slot).impulse[0])};
+    return {slot, flip_float(state.joints.moved(slot).impulse[0])};
   }
   if (kind == "contact") {
     busiest(state.contacts,
@@ -43,12 +43,13 @@ std::pair<std::size_t, std::uint32_t> flip_in(State& state, const Flip& flip) {
     flip_bit(state.registers.at(slot), flip.bit);
     return {slot, state.registers.at(slot)};
   }
-  auto& body = state.bodies.at(slot);
-  if (field == "position[0]") return {slot, flip_float(body.position[0])};
-  if (field == "velocity[1]") return {slot, flip_float(body.velocity[1])};
-  if (field == "gravity_scale") return {slot, flip_float(body.gravity_scale)};
-  ADD_FAILURE() << field;
-  return {slot, 0};
+  return state.bodies.edit_one(slot, [&](auto& body) -> std::pair<std::size_t, std::uint32_t> {
+    if (field == "position[0]") return {slot, flip_float(body.position[0])};
+    if (field == "velocity[1]") return {slot, flip_float(body.velocity[1])};
+    if (field == "gravity_scale") return {slot, flip_float(body.gravity_scale)};
+    ADD_FAILURE() << field;
+    return {slot, 0};
+  });
 }
 
 class DesyncFlip : public DesyncTest, public testing::WithParamInterface<Flip> {};
@@ -129,7 +130,7 @@ class DesyncBreaks : public DesyncTest {
     open("half-pipe", 2);
     run_to(57);
     change_state(guests_[1].replica->simulation(),
-                 [](auto& state) { flip_bit(state.bodies.at(1).position[0], 0); });
+                 [](auto& state) { flip_bit(state.bodies.moved(1).position[0], 0); });
     run_to(65);
     ASSERT_EQ(inquiry_->desk().open(), 1u);
     ASSERT_TRUE(findings_.empty()) << "it waits for the others' votes";

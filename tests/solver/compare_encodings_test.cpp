@@ -39,7 +39,7 @@ World<2> two_balls() {
 TEST(CompareEncodings, NamesTheNumberAndBothValues) {
   const World<2> world = two_balls();
   WorldState<2> other = world.state();
-  other.bodies[2].velocity[1] = 0.25f;
+  other.bodies.moved(2).velocity[1] = 0.25f;
   const auto compared = compare_encodings(bytes_of(world.state()), bytes_of(other), 8);
   ASSERT_TRUE(compared.ok());
   ASSERT_EQ(compared.value().first.size(), 1u);
@@ -54,10 +54,10 @@ TEST(CompareEncodings, TakesZerosAndNaNsForOneAsTheDigestDoes) {
   const World<2> world = two_balls();
   WorldState<2> a = world.state();
   WorldState<2> b = a;
-  a.bodies[1].force[0] = 0.0f;
-  b.bodies[1].force[0] = -0.0f;
-  a.bodies[1].torque = std::bit_cast<decltype(a.bodies[1].torque)>(0x7fc00001u);
-  b.bodies[1].torque = std::bit_cast<decltype(a.bodies[1].torque)>(0xffc00000u);
+  a.bodies.moved(1).force[0] = 0.0f;
+  b.bodies.moved(1).force[0] = -0.0f;
+  a.bodies.moved(1).torque = std::bit_cast<decltype(a.bodies[1].torque)>(0x7fc00001u);
+  b.bodies.moved(1).torque = std::bit_cast<decltype(a.bodies[1].torque)>(0xffc00000u);
   EXPECT_EQ(compare_encodings(bytes_of(a), bytes_of(b), 8).value().count, 0u);
   EXPECT_EQ(digest_encoding(bytes_of(a)), digest_encoding(bytes_of(b)));
 }
@@ -78,7 +78,7 @@ TEST(CompareEncodings, MatchesContactsByTheirShapes) {
 TEST(CompareEncodings, NamesAtMostAsManyAsAskedForAndCountsTheRest) {
   const World<2> world = two_balls();
   WorldState<2> other = world.state();
-  for (auto& body : other.bodies) body.position[0] += 1.0f;
+  for (std::size_t i = 0; i < other.bodies.size(); ++i) other.bodies.moved(i).position[0] += 1.0f;
   other.contacts[1].points[0].normal_impulse += 1.0f;
   const auto compared = compare_encodings(bytes_of(world.state()), bytes_of(other), 2);
   EXPECT_EQ(compared.value().count, 4u);
@@ -91,8 +91,10 @@ TEST(CompareEncodings, IndicesAndFloatsMayBeAnything) {
   const World<2> world = two_balls();
   WorldState<2> other = world.state();
   other.contacts[0].shape_a = 0xfffffff0u;
-  other.bodies[1].first_shape = 77;
-  other.bodies[1].kind = BodyKind(99);
+  other.bodies.edit_one(1, [](Body<2>& body) {
+    body.first_shape = 77;
+    body.kind = BodyKind(99);
+  });
   const auto bytes = bytes_of(other);
   EXPECT_TRUE(compare_encodings(bytes_of(world.state()), bytes, 100).ok());
   EXPECT_TRUE(compare_encodings(bytes, bytes_of(world.state()), 100).ok());

@@ -29,7 +29,7 @@ static Stones stones() {
     Body<3> body{};
     body.kind = BodyKind::kDynamic;
     body.extent = i == 1 ? 0.7f : 0.6f;
-    made.state.bodies.push_back(body);
+    made.state.bodies.edit([&](auto& bodies) { bodies.push_back(body); });
     made.poses.push_back({{{0.9f * static_cast<float>(i), 0.0f, 0.0f}}, identity_rotation<3>()});
   }
   made.state.shapes.edit([&](std::vector<Shape<3>>& items) { items = shapes; });

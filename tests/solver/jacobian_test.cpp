@@ -143,7 +143,7 @@ static void check_all_kinds() {
     if (expected < 0) continue;
     for (int trial = 0; trial < 12; ++trial) {
       WorldState<D> state;
-      state.bodies.resize(2);
+      state.bodies.edit([](auto& bodies) { bodies.resize(2); });
       Joint<D> joint = joint_of<D>(test.kind, random);
       joint.size = {0.9f, 0.9f};
       JointPose<D> pose = random_pose<D>(random);
@@ -168,7 +168,7 @@ static void check_coordinates() {
   std::mt19937 random(7);
   for (int trial = 0; trial < 12; ++trial) {
     WorldState<D> state;
-    state.bodies.resize(2);
+    state.bodies.edit([](auto& bodies) { bodies.resize(2); });
     const JointPose<D> pose = random_pose<D>(random);
     Joint<D> spring = joint_of<D>(JointKind::kDistance, random);
     spring.hertz = 2.0f;
@@ -195,7 +195,7 @@ TEST(Jacobian, OfTheCoordinateOfSpringsRopesAndSlackPulleysIsExactAnywhere) {
 TEST(Jacobian, OfARackIsExactAndItsAngleCountsWholeTurns) {
   std::mt19937 random(11);
   WorldState<2> state;
-  state.bodies.resize(2);
+  state.bodies.edit([](auto& bodies) { bodies.resize(2); });
   for (int trial = 0; trial < 12; ++trial) {
     const JointPose<2> pose = random_pose<2>(random);
     Joint<2> joint = joint_of<2>(JointKind::kGear, random);
@@ -219,7 +219,7 @@ static Vec<2> point_on(CurveKind kind, const std::array<float, 2>& size, float t
 TEST(Jacobian, OfCurvesIsExactOnThemAndTheErrorVanishesThere) {
   std::mt19937 random(13);
   WorldState<2> state;
-  state.bodies.resize(2);
+  state.bodies.edit([](auto& bodies) { bodies.resize(2); });
   for (const CurveKind curve : {CurveKind::kCircle, CurveKind::kEllipse, CurveKind::kCycloid})
     for (int trial = 0; trial < 12; ++trial) {
       Joint<2> joint = joint_of<2>(JointKind::kCurve, random);

@@ -16,7 +16,9 @@ struct JointedPair {
   std::array<Vec<3>, 2> position;
   std::array<Rotation<3>, 2> rotation;
 
-  JointedPair() { state.bodies.resize(2); }
+  JointedPair() {
+    state.bodies.edit([](auto& bodies) { bodies.resize(2); });
+  }
   JointFrame<3> frame() const {
     return make_frame(state, joint, position[0], position[1] - position[0], rotation[0],
                       rotation[1], 0.0f);

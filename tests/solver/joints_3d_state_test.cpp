@@ -161,7 +161,7 @@ TEST(Joints3D, AStateWithASpoiltJointIsRefused) {
   const std::vector<JointId> ids = add_arms(scene);
   const auto accepts = [&](JointId id, const std::function<void(Joint<3>&)>& spoil) {
     WorldState<3> state = scene.world.state();
-    spoil(state.joints[id.index]);
+    state.joints.edit_one(id.index, spoil);
     return validate(state).ok();
   };
   EXPECT_TRUE(accepts(ids[4], [](auto&) {}));

@@ -99,7 +99,8 @@ TEST(Polyhedra, ABodyDestroyedAndMadeAgainLeavesTheSameHulls) {
   add(world, BodyDef<3>{}, hull_def(box_points(1, 2, 3)));
   // All but the generations of the two bodies is as before.
   WorldState<3> again = world.state();
-  for (const BodyId id : boxes) again.bodies[id.index].generation = id.generation;
+  for (const BodyId id : boxes)
+    again.bodies.edit_one(id.index, [&](Body<3>& body) { body.generation = id.generation; });
   world.restore(again);
   EXPECT_EQ(encoded(world), before);
   world.restore(saved);

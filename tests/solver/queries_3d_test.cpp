@@ -19,7 +19,7 @@ static WorldState<3> state_of(const std::vector<std::pair<Shape<3>, Pose<3>>>& p
     body.rotation = pose.rotation;
     Shape<3> owned = shape;
     owned.body = static_cast<std::uint32_t>(state.bodies.size());
-    state.bodies.push_back(body);
+    state.bodies.edit([&](auto& bodies) { bodies.push_back(body); });
     state.shapes.edit([&](auto& shapes) { shapes.push_back(owned); });
   }
   return state;

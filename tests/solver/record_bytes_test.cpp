@@ -88,21 +88,33 @@ TYPED_TEST(Records, AreTheSameBytesByCopyAndByNumber) {
   }
 }
 
+/// Records enter a digest as their numbers, or as the digest of these where they are many; parts
+/// always as their numbers.
 template <class R>
 void expect_digested_as_numbers(const std::vector<R>& records) {
   // Begun with some numbers, so that records start at every place of the buffer.
   for (std::uint32_t before : {0u, 1u, 5u, 1021u}) {
     DigestWriter by_number;
     DigestWriter by_record;
-    for (std::uint32_t i = 0; i < before; ++i) {
-      by_number(i);
-      by_record(i);
-    }
-    for (const R& record : records) visit_words(record, by_number);
+    DigestWriter all_numbers;
+    DigestWriter by_part;
+    const auto in_all = [&](std::uint32_t number) {
+      for (DigestWriter* writer : {&by_number, &by_record, &all_numbers, &by_part})
+        (*writer)(number);
+    };
+    for (std::uint32_t i = 0; i < before; ++i) in_all(i);
+    DigestWriter numbers;
+    for (const R& record : records) visit_words(record, numbers);
+    if (records.size() * visited_bytes<R>() > DigestWriter::kFewBytes)
+      by_number(numbers.digest());
+    else
+      for (const R& record : records) visit_words(record, by_number);
+    for (const R& record : records) visit_words(record, all_numbers);
     by_record.records(std::span(records));
-    by_number(7u);
-    by_record(7u);
+    by_part.template parts<R>(std::span(records));
+    in_all(7u);
     EXPECT_EQ(by_record.digest(), by_number.digest()) << records.size() << " after " << before;
+    EXPECT_EQ(by_part.digest(), all_numbers.digest()) << records.size() << " after " << before;
   }
 }
 

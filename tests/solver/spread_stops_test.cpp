@@ -11,11 +11,13 @@ struct PairThatStops {
   StepContext<2> context = make_step_context<2>(kTick, {}, Tuning{});
 
   PairThatStops() {
-    state.bodies.resize(2);
-    for (Body<2>& body : state.bodies) body.rotation = identity_rotation<2>();
-    Joint<2>& joint = state.joints.emplace_back();
+    Body<2> body{};
+    body.rotation = identity_rotation<2>();
+    state.bodies.edit([&](auto& bodies) { bodies.assign(2, body); });
+    Joint<2> joint{};
     joint.anchor_a = {{0.5f, 0.0f}};
     joint.anchor_b = {{-0.5f, 0.0f}};
+    state.joints.edit([&](auto& joints) { joints.push_back(joint); });
     JointRow<2>& row = scratch.joint_rows.emplace_back();
     row.body_b = 1;
     row.holds_point = true;

@@ -92,7 +92,7 @@ TEST(Trace, DigestsSeeTheLowestBit) {
   WorldState<2> state;
   other.save(state);
   std::uint32_t bits = std::bit_cast<std::uint32_t>(state.bodies[1].velocity[0]);
-  state.bodies[1].velocity[0] = std::bit_cast<float>(bits + 1);
+  state.bodies.moved(1).velocity[0] = std::bit_cast<float>(bits + 1);
   other.restore(state);
   StepTrace a;
   StepTrace b;

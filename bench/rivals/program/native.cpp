@@ -22,8 +22,8 @@ class NativeRun final : public RivalRun<D> {
   bool step(std::uint32_t) override {
     engine_->step({});
     for (std::uint32_t i = 0; i < state_.bodies.size(); ++i) {
-      solver::Body<D>& body = state_.bodies[i];
-      if (body.kind == solver::BodyKind::kFree) continue;
+      if (state_.bodies[i].kind == solver::BodyKind::kFree) continue;
+      solver::BodyMotion<D>& body = state_.bodies.moved(i);
       const solver::Pose<D> pose = engine_->pose(i);
       const peers::Twist<D> twist = engine_->twist(i);
       body.position = pose.position;
