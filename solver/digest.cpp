@@ -36,6 +36,7 @@ static void write_array(const MovedArray<R>& array, DigestWriter& write) {
   write.parts<typename R::Moved>(records);
 }
 
+/// Number by number, but for the tuning, which is most of it and lies in memory as a record does.
 template <int D>
 static void write_header(const WorldHeader<D>& header, DigestWriter& write) {
   visit(header, [&](const char*, const auto& field) {
