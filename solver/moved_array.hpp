@@ -32,8 +32,6 @@ class MovedArray {
     return number_.get(make);
   }
 
-  void shrink_to_fit() { items_.shrink_to_fit(); }
-
   /// Calls change(std::vector<T>&) with the array and returns what it does. The vector is good
   /// until `change` returns.
   template <class Change>

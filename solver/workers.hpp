@@ -70,14 +70,8 @@ class KeptNumber {
   KeptNumber(const KeptNumber& other) : number_(other.load()) {}
   /// What it was made of has gone with it.
   KeptNumber(KeptNumber&& other) noexcept : number_(other.load()) { other.forget(); }
-  KeptNumber& operator=(const KeptNumber& other) {
+  KeptNumber& operator=(KeptNumber other) noexcept {
     number_.store(other.load(), std::memory_order_relaxed);
-    return *this;
-  }
-  KeptNumber& operator=(KeptNumber&& other) noexcept {
-    const std::uint64_t number = other.load();
-    other.forget();
-    number_.store(number, std::memory_order_relaxed);
     return *this;
   }
 

@@ -29,7 +29,8 @@ class DigestWriter {
   /// which they are read where they lie.
   template <class R>
   void records(std::span<const R> records) {
-    if (records.size() * visited_bytes<R>() > kFewBytes) return (*this)(digest_of(records));
+    constexpr std::size_t kBytes = visited_bytes<R>();
+    if (records.size() * kBytes > kFewBytes) return (*this)(digest_of(records));
     parts<R>(records);
   }
 

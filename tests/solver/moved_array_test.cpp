@@ -35,35 +35,33 @@ void add(std::uint64_t worth, MovedArray<Coin>& coins) {
   coins.edit([&](std::vector<Coin>& all) { all.push_back({{worth}, {0}}); });
 }
 
-}  // namespace
+/// A coin worth 5, counted once.
+class MovedArrayTest : public testing::Test {
+ protected:
+  MovedArrayTest() {
+    add(5, coins);
+    EXPECT_EQ(count.of(coins), 6u);
+  }
 
-TEST(MovedArray, MakesItsNumberOnceWhateverMoves) {
   Counting count;
   MovedArray<Coin> coins;
-  add(5, coins);
-  EXPECT_EQ(count.of(coins), 6u);
+};
+
+TEST_F(MovedArrayTest, MakesItsNumberOnceWhateverMoves) {
   coins.moved(0).at = 9;
   EXPECT_EQ(coins[0].at, 9u);
   EXPECT_EQ(count.of(coins), 6u);
   EXPECT_EQ(count.made, 1);
 }
 
-TEST(MovedArray, ForgetsItsNumberWithEveryEdit) {
-  Counting count;
-  MovedArray<Coin> coins;
-  add(5, coins);
-  EXPECT_EQ(count.of(coins), 6u);
+TEST_F(MovedArrayTest, ForgetsItsNumberWithEveryEdit) {
   add(2, coins);
   EXPECT_EQ(count.of(coins), 8u);
   coins.edit_one(0, [](Coin& coin) { coin.worth = 1; });
   EXPECT_EQ(count.of(coins), 4u);
 }
 
-TEST(MovedArray, GivesItsNumberToCopiesWhichThenForgetByThemselves) {
-  Counting count;
-  MovedArray<Coin> coins;
-  add(5, coins);
-  EXPECT_EQ(count.of(coins), 6u);
+TEST_F(MovedArrayTest, GivesItsNumberToCopiesWhichThenForgetByThemselves) {
   MovedArray<Coin> copy = coins;
   MovedArray<Coin> assigned;
   add(70, assigned);
@@ -78,11 +76,7 @@ TEST(MovedArray, GivesItsNumberToCopiesWhichThenForgetByThemselves) {
   EXPECT_EQ(count.of(coins), 6u);
 }
 
-TEST(MovedArray, LeavesNoNumberWhereItWasMovedFrom) {
-  Counting count;
-  MovedArray<Coin> coins;
-  add(5, coins);
-  EXPECT_EQ(count.of(coins), 6u);
+TEST_F(MovedArrayTest, LeavesNoNumberWhereItWasMovedFrom) {
   MovedArray<Coin> other = std::move(coins);
   EXPECT_EQ(count.of(other), 6u);
   coins.edit([](std::vector<Coin>& all) { all.clear(); });
@@ -91,6 +85,9 @@ TEST(MovedArray, LeavesNoNumberWhereItWasMovedFrom) {
   EXPECT_EQ(count.of(coins), 3u);
   other = std::move(coins);
   EXPECT_EQ(count.of(other), 3u);
+  EXPECT_EQ(count.of(coins), 1u);
 }
+
+}  // namespace
 
 }  // namespace cycloid::solver
