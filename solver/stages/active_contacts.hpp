@@ -1,5 +1,8 @@
 #pragma once
 
+#include <algorithm>
+
+#include "solver/fetch_ahead.hpp"
 #include "solver/step_scratch.hpp"
 
 namespace cycloid::solver {
@@ -24,6 +27,11 @@ class OldContacts {
   std::uint32_t place(std::uint32_t i) const { return places_ == nullptr ? i : places_[i]; }
   const Contact<D>& operator[](std::uint32_t i) const { return contacts_[place(i)]; }
   std::uint64_t key(std::uint32_t i) const { return key_of((*this)[i]); }
+  /// Those from i on, so many at most, are read soon.
+  void fetch(std::uint32_t i, std::uint32_t count) const {
+    for (const std::uint32_t end = i + std::min(count, size_ - i); i < end; ++i)
+      fetch_ahead((*this)[i]);
+  }
   /// The first whose key is not below.
   std::uint32_t lower_bound(std::uint64_t key) const;
 

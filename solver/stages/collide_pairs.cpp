@@ -138,6 +138,7 @@ static void collide_range(const Collider<D>& collider, const StepContext<D>& con
     PlacedPair<D> batch[kPairGrain];
     for (int i = 0; i < size; ++i)
       batch[i] = placed(context, state, pairs[static_cast<std::size_t>(begin + i)]);
+    contacts.fetch(old, static_cast<std::uint32_t>(size));
     collider(batch, size, list.found.data(), memory);
     for (int i = 0; i < size; ++i) {
       pass_old(contacts, key_of(batch[i]), old, list);

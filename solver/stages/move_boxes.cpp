@@ -1,4 +1,5 @@
 #include "solver/bodies/body_kernels.hpp"
+#include "solver/fetch_ahead.hpp"
 #include "solver/lane_widths.hpp"
 #include "solver/stages/in_chunks.hpp"
 #include "solver/stages/stages.hpp"
@@ -93,18 +94,57 @@ struct AskedTally {
   Tally flips;    ///< Ranges with a shape that does.
 };
 
+/// Bodies whose shapes memory was asked for, to be looked at when some have come together.
+struct FetchedBodies {
+  static constexpr int kMax = 16;
+  std::uint32_t first_shape[kMax];
+  std::uint8_t active[kMax];
+  int count = 0;
+};
+
+/// Who of a range takes part, and what follows for the boxes of its shapes.
+template <int D>
+struct Asking {
+  const StepContext<D>& context;
+  const WorldState<D>& state;
+  PairCache<D>& cache;
+  std::vector<std::uint32_t>& leaving;
+  FetchedBodies fetched;
+  MovingShapes moving;
+  bool flips = false;  ///< A shape takes part that did not, or the other way round.
+};
+
+/// Moves the boxes of all shapes of the fetched bodies, in the order of the bodies. None is left.
+template <int D>
+static void look_at_fetched(Asking<D>& asking) {
+  PairCache<D>& cache = asking.cache;
+  MovingShapes& moving = asking.moving;
+  for (int i = 0; i < asking.fetched.count; ++i) {
+    const std::uint8_t active = asking.fetched.active[i];
+    for (std::uint32_t s = asking.fetched.first_shape[i]; s != kNone;
+         s = asking.state.shapes[s].next) {
+      asking.flips = asking.flips || cache.active[s] != active;
+      cache.active[s] = active;
+      cache.is_still[s] = active ^ 1;
+      moving.shapes[moving.count++] = s;
+      if (moving.count == MovingShapes::kMax)
+        move_boxes_of(asking.context, asking.state, moving, cache, asking.leaving);
+    }
+  }
+  asking.fetched.count = 0;
+}
+
 /// Asks a range of those that are to be asked, and moves the boxes of who takes part.
 template <int D>
 static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state, Range range,
                        StepScratch<D>& scratch, AskedTally& tally,
                        std::vector<std::uint32_t>& leaving) {
-  PairCache<D>& cache = scratch.kept->pair_cache;
   ActiveBodies& bodies = scratch.kept->active_bodies;
   std::uint32_t asleep = 0;
   std::uint32_t asleep_before = 0;
   std::uint32_t changes = 0;
-  bool flips = false;
-  MovingShapes moving;
+  Asking<D> asking{context, state, scratch.kept->pair_cache, leaving, {}, {}, false};
+  FetchedBodies& fetched = asking.fetched;
   for (int i = range.begin; i < range.end; ++i) {
     const std::uint32_t slot = bodies.to_ask[static_cast<std::size_t>(i)];
     const Body<D>& body = state.bodies[slot];
@@ -120,20 +160,18 @@ static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state
       bodies.has_mass[slot] = has_mass;
     }
     if (!moves || body.first_shape == kNone) continue;
-    if (active == 0 && cache.is_still[body.first_shape] != 0) continue;
-    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next) {
-      flips = flips || cache.active[s] != active;
-      cache.active[s] = active;
-      cache.is_still[s] = active ^ 1;
-      moving.shapes[moving.count++] = s;
-      if (moving.count == MovingShapes::kMax) move_boxes_of(context, state, moving, cache, leaving);
-    }
+    if (active == 0 && asking.cache.is_still[body.first_shape] != 0) continue;
+    fetch_ahead(state.shapes[body.first_shape]);
+    fetched.first_shape[fetched.count] = body.first_shape;
+    fetched.active[fetched.count++] = active;
+    if (fetched.count == FetchedBodies::kMax) look_at_fetched(asking);
   }
-  move_boxes_of(context, state, moving, cache, leaving);
+  look_at_fetched(asking);
+  move_boxes_of(context, state, asking.moving, asking.cache, leaving);
   tally.asleep.add(asleep);
   tally.asleep_before.add(asleep_before);
   tally.changes.add(changes);
-  if (flips) tally.flips.add(1);
+  if (asking.flips) tally.flips.add(1);
 }
 
 /// Those of whom it was asked are all that may take part.

@@ -59,11 +59,12 @@ static const std::vector<Rule>& rules() {
        "x = std::midpoint(a, b); clog(a);",
        true},
       // Moving lanes, cutting them to whole numbers, counting zeros and asking for instructions are
-      // exact. (Units of one instruction set may not share std::countr_zero with others.)
-      {R"(__builtin_(?!(sqrtf|shufflevector|convertvector|ctz|cpu_supports)\b)\w+|)"
+      // exact, and to ask for memory changes nothing. (Units of one instruction set may not share
+      // std::countr_zero with others.)
+      {R"(__builtin_(?!(sqrtf|shufflevector|convertvector|ctz|cpu_supports|prefetch)\b)\w+|)"
        R"(__sync_\w+|__atomic_\w+)",
        "a compiler's own function differs between compilers: C++, or Lanes<W> for wide arithmetic",
-       {"x = __builtin_sinf(a);", "x = __builtin_sqrt(a);", "__builtin_prefetch(p);",
+       {"x = __builtin_sinf(a);", "x = __builtin_sqrt(a);", "__builtin_trap();",
         "n = __builtin_ctzl(bits);"},
        "x = __builtin_sqrtf(a);",
        true},
