@@ -13,12 +13,12 @@ class Extremes {
  public:
   explicit Extremes(unsigned seed) : random_(seed), world_(make_world(definition())) {
     const int bodies = 3 + one_of(10);
-    const float spread = power_of_ten(-2.0f, 0.0f);
+    const float spread = power_of_ten(-2, 0);
     for (int i = 0; i < bodies; ++i) add_one(i, spread);
     for (int joint = one_of(4); joint > 0; --joint) join_two();
   }
 
-  /// Up to three ticks. The world is good until the next call.
+  /// Up to three ticks, or up to a fault. @returns the world, which stays this play's own.
   World<D>& play(int lanes) {
     EXPECT_TRUE(world_.set_lanes(lanes).ok());
     for (int tick = 1 + one_of(3); tick > 0; --tick) {
@@ -31,8 +31,14 @@ class Extremes {
  private:
   int one_of(int count) { return static_cast<int>(random_() % static_cast<unsigned>(count)); }
   std::size_t at_random() { return random_() % ids_.size(); }
-  float power_of_ten(float lower, float upper) {
-    return std::pow(10.0f, uniform(random_, lower, upper));
+  /// From ten to the power of `lower` on, below that of `upper`. By products alone: libraries round
+  /// powers differently, and a seed is to be the same world on every machine.
+  float power_of_ten(int lower, int upper) {
+    float value = uniform(random_, 1.0f, 10.0f);
+    const int power = lower + one_of(upper - lower);
+    for (int i = 0; i < power; ++i) value *= 10.0f;
+    for (int i = power; i < 0; ++i) value *= 0.1f;
+    return value;
   }
   Vec<D> within(float bound) {
     Vec<D> vector;
@@ -51,7 +57,7 @@ class Extremes {
   }
 
   ShapeDef<D> shape() {
-    const float size = power_of_ten(-2.0f, 0.0f);
+    const float size = power_of_ten(-2, 0);
     ShapeDef<D> of = ball<D>(size);
     if (one_of(2) == 0) {
       of = brick(size);
@@ -75,7 +81,7 @@ class Extremes {
     if (number == 0 && one_of(2) == 0) {
       def.kind = BodyKind::kStatic;
     } else {
-      if (one_of(4) == 0) def.mass = power_of_ten(-8.0f, 10.0f);
+      if (one_of(4) == 0) def.mass = power_of_ten(-8, 10);
       if (one_of(5) == 0) def.velocity = within(9.0e4f);
     }
     ids_.push_back(add(world_, def, shape()));
@@ -93,7 +99,7 @@ class Extremes {
   }
 
   void push(BodyId id) {
-    const float most = power_of_ten(6.0f, 12.0f);
+    const float most = power_of_ten(6, 12);
     if (one_of(2) == 0) {
       EXPECT_TRUE(world_.apply_force(id, within(most)).ok());
     }
@@ -130,8 +136,8 @@ int expect_the_same_ends(unsigned plays) {
   return faults;
 }
 
-// Without World::step_in_one_lane thirty of these two thousand plays name another body or field in
-// lanes than alone.
+// Without World::step_in_one_lane 18 of these plays in the plane and 23 in space name another body
+// or field in lanes than alone.
 TEST(FaultsInLanes, AreOfTheSameBodyAndFieldInThePlane) {
   EXPECT_GT(expect_the_same_ends<2>(1000), 200);
 }
