@@ -4,6 +4,7 @@
 #include <span>
 #include <vector>
 
+#include "solver/coloring.hpp"
 #include "solver/direct/body_matrix.hpp"
 #include "solver/motion.hpp"
 
@@ -175,6 +176,8 @@ class IslandSolver {
   };
 
   BodyMatrix<D> matrix;
+  std::vector<MovingPair> found_of;        ///< Contacts that islands were found of.
+  bool joints_as_found = false;            ///< They are as when islands were found.
   std::vector<std::uint32_t> held_words;   ///< What `held` was made of, but for the joints.
   bool joints_as_listed = false;           ///< They, and their places, are as when `held` was made.
   std::vector<HeldPair> held;              ///< Contacts in the order of the colouring, then joints.
@@ -191,6 +194,7 @@ class IslandSolver {
   std::vector<Source> sources;             ///< By group.
   std::vector<std::uint32_t> body_of;      ///< By node, the slot.
   std::vector<std::uint32_t> tree;         ///< By slot: union-find of those that hold each other.
+  std::vector<std::uint32_t> pairs_of;     ///< By slot: how many of those it is the first of.
   std::vector<int> node_of;                ///< By slot; -1: in no island that has nodes.
   std::vector<int> island_of;              ///< By slot; -1: nothing holds it.
   std::vector<Vector> change;              ///< By node: of the velocity, m/s and rad/s.

@@ -115,13 +115,19 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   const Order order = state.header.tuning.order;
   const bool were_colored = std::exchange(scratch.colored_joints, order == Order::kColor);
   const bool keeps_joints = same_joints && were_colored && order == Order::kColor;
-  if (!keeps_joints) scratch.islands_solved.joints_as_listed = false;
+  if (!keeps_joints)
+    scratch.islands_solved.joints_as_listed = scratch.islands_solved.joints_as_found = false;
+  scratch.colors.pairs.resize(scratch.live.size());
+  const auto pair_of_contact = [&](std::size_t i) {
+    return scratch.colors.pairs[i] = pair_of(scratch.live[i].body_a, scratch.live[i].body_b);
+  };
   if (order != Order::kColor) {
     const bool reverse = order == Order::kReverse;
     list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
     name_slots(joints, scratch.joint_coloring);
     list_in_order(static_cast<int>(scratch.live.size()), reverse, scratch.contact_coloring);
     std::fill(std::begin(scratch.colors.sizes), std::end(scratch.colors.sizes), 0);
+    for (std::size_t i = 0; i < scratch.live.size(); ++i) pair_of_contact(i);
     return;
   }
   scratch.used_colors.resize(state.bodies.size());
@@ -131,10 +137,6 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
     sort_by_color(scratch.colors, scratch.joint_coloring);
     name_slots(joints, scratch.joint_coloring);
   }
-  scratch.colors.pairs.resize(scratch.live.size());
-  const auto pair_of_contact = [&](std::size_t i) {
-    return scratch.colors.pairs[i] = pair_of(scratch.live[i].body_a, scratch.live[i].body_b);
-  };
   assign_colors(scratch.live.size(), pair_of_contact, scratch.used_colors, scratch.colors);
 }
 

@@ -4,7 +4,6 @@
 
 #include "solver/stages/island_rows.hpp"
 #include "solver/stages/stages.hpp"
-#include "solver/union_find.hpp"
 
 namespace cycloid::solver {
 
@@ -19,50 +18,6 @@ static constexpr int kProductsPerPairAndTick = 960;
 /// stack, a bridge and an arch have as many pairs as bodies, heaps and nets twice as many.
 static constexpr float kThinPairsPerBody = 1.25f;
 static constexpr int kThinPairsMore = 2;
-
-/// Islands in the order of their lowest slots.
-template <int D>
-static void find_islands(StepScratch<D>& scratch) {
-  IslandSolver<D>& solver = scratch.islands_solved;
-  const std::size_t slots = scratch.masses.size();
-  solver.tree.resize(slots);
-  solver.island_of.assign(slots, -1);
-  for (std::uint32_t slot = 0; slot < slots; ++slot) solver.tree[slot] = slot;
-  for (const HeldPair& pair : solver.held) {
-    if (pair.a_moves) solver.island_of[pair.a] = 0;
-    if (pair.b_moves) solver.island_of[pair.b] = 0;
-    if (!pair.a_moves || !pair.b_moves) continue;
-    const std::uint32_t a = root_of(solver.tree, pair.a);
-    const std::uint32_t b = root_of(solver.tree, pair.b);
-    solver.tree[std::max(a, b)] = std::min(a, b);
-  }
-  solver.islands.clear();
-  for (std::uint32_t slot = 0; slot < slots; ++slot) {
-    if (solver.island_of[slot] < 0) continue;
-    const std::uint32_t root = root_of(solver.tree, slot);
-    if (root == slot) {
-      solver.island_of[slot] = static_cast<int>(solver.islands.size());
-      solver.islands.emplace_back();
-    }
-    solver.island_of[slot] = solver.island_of[root];
-    ++solver.islands[static_cast<std::size_t>(solver.island_of[slot])].bodies;
-  }
-}
-
-/// Says of which island each pair is.
-template <int D>
-static void count_pairs(IslandSolver<D>& solver) {
-  solver.held_in.resize(solver.held.size());
-  for (std::size_t i = 0; i < solver.held.size(); ++i) {
-    const HeldPair& pair = solver.held[i];
-    const int at = solver.island_of[pair.a_moves ? pair.a : pair.b];
-    solver.held_in[i] = at;
-    if (at < 0) continue;
-    auto& island = solver.islands[static_cast<std::size_t>(at)];
-    ++island.pairs;
-    if (pair.lane < 0) ++island.joint_count;
-  }
-}
 
 static bool would_be_thin(int pairs, int bodies) {
   return pairs <= static_cast<int>(kThinPairsPerBody * static_cast<float>(bodies)) + kThinPairsMore;
@@ -85,7 +40,7 @@ static bool may_be_weighed(const typename IslandSolver<D>::Island& island) {
 }
 
 /// Which islands are to be solved or weighed in this tick. @returns whether any is.
-/// @pre find_islands and count_pairs.
+/// @pre find_held_islands.
 template <int D>
 static bool want_islands(IslandSolver<D>& solver) {
   for (auto& island : solver.islands) {
@@ -236,9 +191,19 @@ static void begin_grouping(const Tuning& tuning, IslandSolver<D>& solver) {
   solver.pairs.clear();
 }
 
+/// Says of which island each pair that holds is.
+template <int D>
+static void place_held(IslandSolver<D>& solver) {
+  solver.held_in.resize(solver.held.size());
+  for (std::size_t i = 0; i < solver.held.size(); ++i) {
+    const HeldPair& pair = solver.held[i];
+    solver.held_in[i] = solver.island_of[pair.a_moves ? pair.a : pair.b];
+  }
+}
+
 /// Sorts what touches or is jointed into islands and plans how each that is wanted is solved at
-/// once. What holds the same as in the tick before is sorted as it was: a cache, which changes no
-/// bit.
+/// once. What holds the same as before is sorted as it was: a cache, which changes no bit. It is
+/// taken down pair by pair only where some island is wanted.
 ///
 /// Reads contact blocks, joint rows, masses, motions and which bodies are loaded; writes the island
 /// solver, and which lanes of blocks land. Serial, in the order of the colouring and of the slots.
@@ -246,13 +211,15 @@ template <int D, int W>
 void group_islands(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   begin_grouping(context.tuning, solver);
+  find_held_islands(scratch);
+  solver.acts = want_islands(solver);
+  if (!solver.acts) return;
   if (!list_held<D, W>(workers, scratch)) {
-    find_islands(scratch);
-    count_pairs(solver);
+    place_held(solver);
+    for (auto& island : solver.islands) island.planned = false;
     solver.is_sorted = false;
   }
-  solver.acts = want_islands(solver);
-  if (solver.acts && solver.only_thin) solver.acts = find_landing<D, W>(scratch);
+  if (solver.only_thin) solver.acts = find_landing<D, W>(scratch);
   if (!solver.acts) return;
   plan_wanted(scratch);
   solver.acts = begin_islands(scratch);

@@ -27,6 +27,12 @@ bool is_moving(const Motion<D>& motion) {
   return dot(motion.velocity, motion.velocity) + dot(motion.spin, motion.spin) > 0.0f;
 }
 
+/// Finds the islands of what holds: contacts, and joints that do not yield; how many bodies, pairs
+/// and joints each has, of what massive bodies hold. Where all is between the same bodies as it was
+/// when they were last found, they stand as they are.
+template <int D>
+void find_held_islands(StepScratch<D>& scratch);
+
 /// Takes down what holds: every contact in the order of the colouring, which is the same whatever
 /// the lanes, then every joint that does not yield. @returns whether it is what held before, in a
 /// world of as many slots, so that all that was made of it still stands.

@@ -162,18 +162,16 @@ void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
   list_awake(scratch);
 }
 
-/// Counts the ticks at rest. Whether a body of this extent has rested for long enough to fall
-/// asleep.
+/// Counts the ticks at rest, slower than `least`, m/s. @returns how many there are.
 template <int D>
-static bool rests_long(const StepContext<D>& context, float extent, BodyMotion<D>& body) {
-  const float least = context.tuning.sleep_speed;
+static std::uint32_t count_rest(float least, float extent, BodyMotion<D>& body) {
   // What flies is far above it, and needs no root to be seen.
   const bool flies = dot(body.velocity, body.velocity) > 2.0f * (least * least);
   const bool rested =
       !flies && body.asleep == 0 && length(body.velocity) + extent * length(body.spin) < least;
   body.rest_ticks = rested ? body.rest_ticks + 1 : 0;  // Who has just woken starts anew.
   body.asleep = 0;
-  return static_cast<float>(body.rest_ticks) >= context.tuning.sleep_s / context.tick_s;
+  return body.rest_ticks;
 }
 
 /// Counts the ticks at rest of bodies that are awake, and says of each with mass whether it is
@@ -181,10 +179,13 @@ static bool rests_long(const StepContext<D>& context, float extent, BodyMotion<D
 template <int D>
 static bool any_rests(const StepContext<D>& context, std::span<const std::uint32_t> slots,
                       MovedArray<Body<D>>& bodies, std::uint8_t* restless) {
+  const float least = context.tuning.sleep_speed;
+  const float long_ticks = context.tuning.sleep_s / context.tick_s;
   bool any = false;
   for (const std::uint32_t slot : slots) {
     if (bodies[slot].inverse_mass == 0.0f) continue;
-    const bool rests = rests_long(context, bodies[slot].extent, bodies.moved(slot));
+    const std::uint32_t ticks = count_rest(least, bodies[slot].extent, bodies.moved(slot));
+    const bool rests = static_cast<float>(ticks) >= long_ticks;
     restless[slot] = rests ? 0 : 1;
     any = any || rests;
   }
