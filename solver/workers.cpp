@@ -15,6 +15,12 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
     call(context, Range{begin, begin + grain < size ? begin + grain : size});
 }
 
+void Workers::dispatch_to_all(void* context, MemberCall call) {
+  call(context, Member());
+}
+
+void Member::wait_for_others() {}
+
 }  // namespace cycloid::solver
 
 #else
@@ -87,7 +93,10 @@ struct alignas(64) Share {
 struct Workers::Threads {
   explicit Threads(int count);
   ~Threads();
+  void start();
+  void wait_for_all();
   void share_out();
+  void run_job(std::size_t own);
   void run_chunks(std::size_t own);
   void thread_main(std::size_t own);
 
@@ -95,11 +104,13 @@ struct Workers::Threads {
   int grain = 1;
   void* context = nullptr;
   Call call = nullptr;
+  MemberCall member_call = nullptr;  ///< Of a job that all do together; then there is no `call`.
   Awaited<std::uint32_t> generation;
   alignas(64) Awaited<int> busy;
   std::atomic<bool> stop{false};
   std::vector<std::thread> threads;
-  std::vector<Share> shares;  ///< By thread; the calling one's is the last.
+  std::vector<Share> shares;       ///< By thread; the calling one's is the last.
+  std::vector<Meetings> meetings;  ///< The same.
 };
 
 Workers::Workers(int count) : count_(count) {
@@ -108,7 +119,8 @@ Workers::Workers(int count) : count_(count) {
 
 Workers::~Workers() = default;
 
-Workers::Threads::Threads(int count) : shares(static_cast<std::size_t>(count) + 1) {
+Workers::Threads::Threads(int count)
+    : shares(static_cast<std::size_t>(count) + 1), meetings(shares.size()) {
   for (std::size_t i = 0; i + 1 < shares.size(); ++i)
     threads.emplace_back([this, i] { thread_main(i); });
 }
@@ -127,13 +139,30 @@ void Workers::dispatch(int size, int grain, void* context, Call call) {
   pool.context = context;
   pool.call = call;
   pool.share_out();
-  pool.busy.value.store(static_cast<int>(pool.threads.size()), std::memory_order_relaxed);
-  pool.generation.value.fetch_add(1);  // Whoever sees it sees all that was written before.
-  pool.generation.tell();
+  pool.start();
   pool.run_chunks(pool.threads.size());
-  // The job's fields may only be written again when every thread has left it.
-  for (int busy = pool.busy.value.load(); busy != 0; busy = pool.busy.value.load())
-    pool.busy.wait_while(busy);
+  pool.wait_for_all();
+}
+
+void Workers::dispatch_to_all(void* context, MemberCall call) {
+  Threads& pool = *threads_;
+  pool.context = context;
+  pool.call = nullptr;
+  pool.member_call = call;
+  pool.start();
+  pool.run_job(pool.threads.size());
+  pool.wait_for_all();
+}
+
+void Workers::Threads::start() {
+  busy.value.store(static_cast<int>(threads.size()), std::memory_order_relaxed);
+  generation.value.fetch_add(1);  // Whoever sees it sees all that was written before.
+  generation.tell();
+}
+
+/// The job's fields may only be written again when every thread has left it.
+void Workers::Threads::wait_for_all() {
+  for (int left = busy.value.load(); left != 0; left = busy.value.load()) busy.wait_while(left);
 }
 
 void Workers::Threads::share_out() {
@@ -155,14 +184,33 @@ void Workers::Threads::run_chunks(std::size_t own) {
   }
 }
 
+void Workers::Threads::run_job(std::size_t own) {
+  if (call != nullptr) return run_chunks(own);
+  const auto count = static_cast<int>(meetings.size());
+  member_call(context, Member(static_cast<int>(own), count, meetings.data()));
+}
+
 void Workers::Threads::thread_main(std::size_t own) {
   // Generation 0 is the constructor's: a thread that starts late still sees the first job.
   for (std::uint32_t seen = 0;;) {
     generation.wait_while(seen);
     seen = generation.value.load();
     if (stop.load()) return;
-    run_chunks(own);
+    run_job(own);
     if (busy.value.fetch_sub(1) == 1) busy.tell();
+  }
+}
+
+/// All have come equally often when a job begins, so nobody has to set a number back.
+void Member::wait_for_others() {
+  std::atomic<std::uint32_t>& own = meetings_[number_].count;
+  const std::uint32_t now = own.load(std::memory_order_relaxed) + 1;
+  own.store(now, std::memory_order_release);
+  for (int i = 0; i < count_; ++i) {
+    const std::atomic<std::uint32_t>& other = meetings_[i].count;
+    // Who is ahead has come once more, at most: it waits there for this one.
+    for (int look = 0; other.load(std::memory_order_acquire) == now - 1; ++look)
+      if (look >= kEagerLooks) std::this_thread::yield();
   }
 }
 

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cstdint>
 #include <memory>
+#include <type_traits>
 #include <utility>
 
 namespace cycloid::solver {
@@ -128,6 +129,46 @@ class Depot {
   std::array<std::atomic<T*>, 64> places_{};  ///< As many as there may be workers.
 };
 
+/// How often a thread of Workers::together has come to a meeting: in a line of its own, which only
+/// it writes and all others look at.
+struct alignas(64) Meetings {
+  std::atomic<std::uint32_t> count{0};
+};
+
+/// One of the threads that do a job together, or the only one.
+class Member {
+ public:
+  Member() = default;
+  Member(int number, int count, Meetings* meetings)
+      : number_(number), count_(count), meetings_(meetings) {}
+
+  /// Its part of a range, in pieces of two: the same part in every job, so what it reads is what it
+  /// wrote before. A range of few pieces has no part for some.
+  Range share_of(const Range& whole) const {
+    if (count_ == 1) return whole;
+    return {begin_of(number_, whole), leads() ? whole.end : begin_of(number_ + 1, whole)};
+  }
+  /// Whether it is the one that does what is not shared: the thread that has called.
+  bool leads() const { return number_ == count_ - 1; }
+  /// Waits for all others to come as often; then each sees what any has written before.
+  /// @pre all of them come as often.
+  void meet() {
+    if (count_ > 1) wait_for_others();
+  }
+
+ private:
+  int begin_of(int number, const Range& whole) const {
+    constexpr std::int64_t kPiece = 2;
+    const std::int64_t pieces = (whole.end - whole.begin + kPiece - 1) / kPiece;
+    return whole.begin + static_cast<int>(pieces * number / count_ * kPiece);
+  }
+  void wait_for_others();
+
+  int number_ = 0;
+  int count_ = 1;
+  Meetings* meetings_ = nullptr;  ///< Of each member; null where it is alone.
+};
+
 /// A fixed pool that runs ranges. The only thread-aware code of the solver.
 ///
 /// The split into ranges of `grain` depends on the work alone, never on the number of threads, and
@@ -155,9 +196,25 @@ class Workers {
              [](void* context, Range range) { (*static_cast<Run*>(context))(range); });
   }
 
+  /// Calls run(Member&) on every thread at the same time; returns when all are done. For work in
+  /// many short parts, each of which needs what all have done in the one before: to meet takes less
+  /// time than to come for a job, and a part is always the same thread's.
+  template <class Run>
+  void together(Run&& run) {
+    if (threads_ == nullptr) {
+      Member alone;
+      return run(alone);
+    }
+    using Job = std::remove_reference_t<Run>;
+    dispatch_to_all(&run,
+                    [](void* context, Member member) { (*static_cast<Job*>(context))(member); });
+  }
+
  private:
   using Call = void (*)(void*, Range);
+  using MemberCall = void (*)(void*, Member);
   void dispatch(int size, int grain, void* context, Call call);
+  void dispatch_to_all(void* context, MemberCall call);
 
   struct Threads;
   int count_;

@@ -44,7 +44,7 @@ void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, 
                      Workers& workers, StepScratch<D>& scratch) {
   if (scratch.joint_rows.empty()) return;
   with_blocks(scratch.pins, [&]<int W>(PinBlocks<D, W>& pins) {
-    workers.parallel_for(static_cast<int>(pins.blocks.size()), kBlockGrain, [&](Range range) {
+    for_each_part_of_colors(pins.colors, {}, workers, [&](Range range) {
       follow_inertia(scratch, range, pins);
       PinKernels<D, W>::evaluate(kLimitReach_substeps * context.h, pin_range<D, W>(scratch, range));
     });

@@ -149,7 +149,6 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
   const ContactInputs<D> inputs = contact_inputs(context, state, scratch);
   const bool always_extra = context.tuning.stabilisation == Stabilisation::kXpbd ||
                             context.tuning.stabilisation == Stabilisation::kSplitImpulse;
-  const Range all = out.blocks_of(lot);
   const auto fill = [&](int block) {
     const Range members = out.members[static_cast<std::size_t>(block)];
     const auto place = static_cast<std::size_t>(block - lot.blocks_before);
@@ -167,8 +166,7 @@ void prepare_contacts(const StepContext<D>& context, const WorldState<D>& state,
   const LoadBounds bounds = load_bounds(context);
   Tally follow;
   Tally bounce;
-  workers.parallel_for(all.end - all.begin, kBlockGrain, [&](Range range) {
-    const Range blocks{all.begin + range.begin, all.begin + range.end};
+  for_each_part_of_colors(colors_of(lot, out), lot.overflow, workers, [&](Range blocks) {
     for (int i = blocks.begin; i < blocks.end; ++i) fill(i);
     const BlockRange<D, W> filled = block_range<D, W>(lot, scratch, blocks);
     ContactKernels<D, W>::complete(bounds, filled);

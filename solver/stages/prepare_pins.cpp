@@ -157,7 +157,7 @@ static void fill_blocks(const WorldState<D>& state, Workers& workers, StepScratc
   const std::size_t count = pins.place_of.size() / kLaneCount<W>;
   out.blocks.resize(count);
   out.turns.resize(count);
-  workers.parallel_for(static_cast<int>(count), kBlockGrain, [&](Range range) {
+  for_each_part_of_colors(out.colors, {}, workers, [&](Range range) {
     for (int b = range.begin; b < range.end; ++b) {
       const auto at = static_cast<std::size_t>(b);
       const std::uint32_t* places = pins.place_of.data() + at * kLaneCount<W>;
@@ -281,7 +281,7 @@ static void store_pin(const PinBlock<D, W>& block, int lane, JointRow<D>& row) {
 template <int D>
 void store_pins(Workers& workers, StepScratch<D>& scratch) {
   with_blocks(scratch.pins, [&]<int W>(const PinBlocks<D, W>& pins) {
-    workers.parallel_for(static_cast<int>(pins.blocks.size()), kBlockGrain, [&](Range range) {
+    for_each_part_of_colors(pins.colors, {}, workers, [&](Range range) {
       for (int i = range.begin; i < range.end; ++i) {
         const PinBlock<D, W>& block = pins.blocks[static_cast<std::size_t>(i)];
         for (int lane = 0; lane < kLaneCount<W>; ++lane)

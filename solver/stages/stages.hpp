@@ -5,6 +5,7 @@
 #include "solver/collision/collide.hpp"
 #include "solver/constraints/contact_kernels.hpp"
 #include "solver/constraints/pin_kernels.hpp"
+#include "solver/stages/by_color.hpp"
 #include "solver/step_context.hpp"
 #include "solver/step_scratch.hpp"
 
@@ -172,25 +173,12 @@ void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D
 template <int D>
 Statistics count_work(const WorldState<D>& state, Workers& workers, const StepScratch<D>& scratch);
 
-/// Ranges of this many bodies, blocks or joints go to one thread at a time; of pairs, kPairGrain.
+/// Ranges of this many bodies or joints go to one thread at a time; of pairs, kPairGrain; blocks go
+/// colour by colour (by_color.hpp).
 inline constexpr int kBodyGrain = 256;
-inline constexpr int kBlockGrain = 8;
 inline constexpr int kJointGrain = 32;
 /// Of what is only looked at, copied or cleared, so many.
 inline constexpr int kLookGrain = 1024;
-
-/// Runs `run(range)` for ranges of every colour in order, those of one colour in parallel, and for
-/// the overflow one by one. The one place that knows why lanes and threads cannot change a bit:
-/// what runs at the same time shares no body that moves.
-template <class Run>
-void for_each_range_by_color(std::span<const Range> colors, Range overflow, Workers& workers,
-                             Run&& run) {
-  for (const Range& color : colors)
-    workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
-      run(Range{color.begin + range.begin, color.begin + range.end});
-    });
-  for (int i = overflow.begin; i < overflow.end; ++i) run(Range{i, i + 1});
-}
 
 /// Runs `run(index)` for every constraint: for_each_range_by_color.
 template <class Run>
@@ -207,6 +195,14 @@ PinRange<D, W> pin_range(StepScratch<D>& scratch, Range range) {
   return {blocks + range.begin, blocks + range.end, scratch.motions.data()};
 }
 
+/// The colours of the blocks of pins; none where there are no pins.
+template <int D>
+std::span<const Range> colors_of(const Pins<D>& pins) {
+  std::span<const Range> colors;
+  with_blocks(pins, [&]<int W>(const PinBlocks<D, W>& blocks) { colors = blocks.colors; });
+  return colors;
+}
+
 /// The joints colour after colour: `on_pins` for ranges of blocks of pins, `on_row` for every other
 /// row; inside a colour in parallel, as for_each_by_color.
 template <int D, class OnPins, class OnRow>
@@ -214,23 +210,33 @@ void for_each_joint_by_color(Workers& workers, StepScratch<D>& scratch, OnPins&&
                              OnRow&& on_row) {
   if (scratch.joint_rows.empty()) return;
   const Coloring& single = scratch.single_rows;
-  const auto row_at = [&](int i) -> JointRow<D>& {
-    const int place = single.order[static_cast<std::size_t>(i)];
-    return scratch.joint_rows[static_cast<std::size_t>(place)];
+  const std::span<const Range> of_pins = colors_of(scratch.pins);
+  const auto pins_of = [&](std::size_t color) {
+    return of_pins.empty() ? Range{} : of_pins[color];
   };
-  for (std::size_t c = 0; c < single.colors.size(); ++c) {
-    with_blocks(scratch.pins, [&]<int W>(PinBlocks<D, W>& pins) {
-      const Range color = pins.colors[c];
-      workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
-        on_pins(pin_range<D, W>(scratch, {color.begin + range.begin, color.begin + range.end}));
-      });
-    });
-    const Range color = single.colors[c];
-    workers.parallel_for(color.end - color.begin, kBlockGrain, [&](Range range) {
-      for (int i = range.begin; i < range.end; ++i) on_row(row_at(color.begin + i));
-    });
-  }
-  for (int i = single.overflow.begin; i < single.overflow.end; ++i) on_row(row_at(i));
+  const auto is_shared_at = [&](std::size_t color) {
+    return is_shared(pins_of(color)) || is_shared(single.colors[color]);
+  };
+  const auto run_pins = [&](Range blocks) {
+    with_blocks(scratch.pins,
+                [&]<int W>(PinBlocks<D, W>&) { on_pins(pin_range<D, W>(scratch, blocks)); });
+  };
+  const auto run_row = [&](int i) {
+    const int place = single.order[static_cast<std::size_t>(i)];
+    on_row(scratch.joint_rows[static_cast<std::size_t>(place)]);
+  };
+  const auto run_rows = [&](Range rows) {
+    for (int i = rows.begin; i < rows.end; ++i) run_row(i);
+  };
+  together_if_any(single.colors.size(), is_shared_at, workers, [&](Member& member) {
+    ColorOrder order(member);
+    for (std::size_t color = 0; color < single.colors.size(); ++color) {
+      order.begin_color(is_shared_at(color));
+      run_part(member, pins_of(color), run_pins);
+      run_part(member, single.colors[color], run_rows);
+    }
+    run_overflow(member, single.overflow, order, run_row);
+  });
 }
 
 /// What blocks of contacts are filled from. @pre prepare_bodies.
@@ -249,25 +255,29 @@ BlockRange<D, W> block_range(const Lot& lot, StepScratch<D>& scratch, Range rang
           scratch.motions.data(), lot.poses, scratch.slides_far};
 }
 
+/// The colours of a lot's blocks.
+template <int D, int W>
+std::span<const Range> colors_of(const Lot& lot, const ContactBlocks<D, W>& contacts) {
+  return std::span(contacts.colors)
+      .subspan(static_cast<std::size_t>(lot.colors.begin),
+               static_cast<std::size_t>(lot.colors.end - lot.colors.begin));
+}
+
 /// Runs `run(BlockRange)` for the contacts of a lot: for_each_range_by_color.
 template <int D, int W, class Run>
 void for_each_block_range(const Lot& lot, Workers& workers, StepScratch<D>& scratch, Run&& run) {
   const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
-  const std::span<const Range> colors =
-      std::span(contacts.colors)
-          .subspan(static_cast<std::size_t>(lot.colors.begin),
-                   static_cast<std::size_t>(lot.colors.end - lot.colors.begin));
-  for_each_range_by_color(colors, lot.overflow, workers,
+  for_each_range_by_color(colors_of(lot, contacts), lot.overflow, workers,
                           [&](Range range) { run(block_range<D, W>(lot, scratch, range)); });
 }
 
-/// Runs `run(BlockRange)` for all blocks of a lot at once, whatever their colour.
+/// Runs `run(BlockRange)` for all blocks of a lot at once, whatever their colour:
+/// for_each_part_of_colors.
 template <int D, int W, class Run>
 void for_all_blocks(const Lot& lot, Workers& workers, StepScratch<D>& scratch, Run&& run) {
-  const Range all = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks_of(lot);
-  workers.parallel_for(all.end - all.begin, kBlockGrain, [&](Range range) {
-    run(block_range<D, W>(lot, scratch, {all.begin + range.begin, all.begin + range.end}));
-  });
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
+  for_each_part_of_colors(colors_of(lot, contacts), lot.overflow, workers,
+                          [&](Range range) { run(block_range<D, W>(lot, scratch, range)); });
 }
 
 /// Runs `run(range)` for ranges of the places of a lot's bodies in moving_bodies.

@@ -3,7 +3,10 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <atomic>
+#include <cstdint>
 #include <numeric>
+#include <utility>
 #include <vector>
 
 namespace cycloid::solver {
@@ -28,6 +31,74 @@ TEST(Workers, RunEveryIndexOnceInRangesOfTheGrain) {
           ASSERT_EQ(std::count(wrong.begin(), wrong.end(), 1), 0);
         }
       }
+    }
+  }
+}
+
+// Every part is some member's, and no more than one's, whatever the range and the threads.
+TEST(Members, SharePartsThatMakeUpTheRange) {
+  for (const int threads : {1, 2, 3, 8}) {
+    Workers workers(threads);
+    for (int size = 0; size < 70; ++size) {
+      const Range whole{1000, 1000 + size};
+      std::vector<Range> parts(static_cast<std::size_t>(threads));
+      std::atomic<int> next{0};
+      std::atomic<int> leaders{0};
+      workers.together([&](Member& member) {
+        if (member.leads()) leaders.fetch_add(1);
+        parts[static_cast<std::size_t>(next.fetch_add(1))] = member.share_of(whole);
+      });
+      ASSERT_EQ(next.load(), threads);
+      ASSERT_EQ(leaders.load(), 1);
+      std::sort(parts.begin(), parts.end(), [](const Range& a, const Range& b) {
+        return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
+      });
+      int end = whole.begin;
+      for (const Range& part : parts) {
+        ASSERT_EQ(part.begin, end);
+        ASSERT_GE(part.end, part.begin);
+        ASSERT_TRUE((part.begin - whole.begin) % 2 == 0 || part.begin == whole.end);
+        end = part.end;
+      }
+      ASSERT_EQ(end, whole.end);
+    }
+  }
+}
+
+// What each has written before they meet, all read behind it: plain numbers, so that a thread
+// sanitizer sees a meeting that does not hold. More threads than processors have to come, too.
+TEST(Members, SeeBehindAMeetingWhatAllHaveWrittenBeforeIt) {
+  for (const int threads : {1, 2, 3, 8}) {
+    Workers workers(threads);
+    constexpr int kNumbers = 64;
+    constexpr int kMeetings = 50;
+    for (int job = 0; job < 20; ++job) {
+      std::vector<std::int64_t> now(kNumbers, 1);
+      std::vector<std::int64_t> next(kNumbers, 0);
+      workers.together([&](Member& member) {
+        for (int round = 0; round < kMeetings; ++round) {
+          auto& from = round % 2 == 0 ? now : next;
+          auto& to = round % 2 == 0 ? next : now;
+          const Range part = member.share_of({0, kNumbers});
+          for (int i = part.begin; i < part.end; ++i) {
+            const int other = (i + kNumbers / 2 + round) % kNumbers;
+            to[static_cast<std::size_t>(i)] =
+                (from[static_cast<std::size_t>(i)] + from[static_cast<std::size_t>(other)] + i) %
+                1000003;
+          }
+          member.meet();
+        }
+      });
+      std::vector<std::int64_t> expected(kNumbers, 1);
+      for (int round = 0; round < kMeetings; ++round) {
+        const std::vector<std::int64_t> from = expected;
+        for (int i = 0; i < kNumbers; ++i)
+          expected[static_cast<std::size_t>(i)] =
+              (from[static_cast<std::size_t>(i)] +
+               from[static_cast<std::size_t>((i + kNumbers / 2 + round) % kNumbers)] + i) %
+              1000003;
+      }
+      ASSERT_EQ(now, expected) << threads << " threads, job " << job;
     }
   }
 }

@@ -1,0 +1,95 @@
+#pragma once
+
+#include <cstddef>
+#include <span>
+
+#include "solver/workers.hpp"
+
+namespace cycloid::solver {
+
+/// How colours are run on all threads. The one place that knows why lanes and threads cannot change
+/// a bit: what runs at the same time shares no body that moves.
+
+/// So many blocks, or joints, of a colour take less time than for two threads to meet after them.
+inline constexpr int kFewOfColor = 8;
+
+inline bool is_shared(const Range& color) {
+  return color.end - color.begin > kFewOfColor;
+}
+
+/// Runs `run(range)` for a member's part of a colour: of one with few the leader has all.
+template <class Run>
+void run_part(const Member& member, const Range& color, Run&& run) {
+  if (is_shared(color)) {
+    const Range part = member.share_of(color);
+    if (part.begin < part.end) run(part);
+  } else if (member.leads() && color.begin < color.end) {
+    run(color);
+  }
+}
+
+/// Has a member meet the others between colours, but for those that the leader has alone.
+class ColorOrder {
+ public:
+  explicit ColorOrder(Member& member) : member_(member) {}
+  void begin_color(bool shared) {
+    if (has_begun_ && (shared || was_shared_)) member_.meet();
+    has_begun_ = true;
+    was_shared_ = shared;
+  }
+
+ private:
+  Member& member_;
+  bool has_begun_ = false;
+  bool was_shared_ = false;
+};
+
+/// Runs `run(member)` on all threads if a colour of [0, count) is shared, else on the calling one.
+template <class IsShared, class Run>
+void together_if_any(std::size_t count, IsShared&& is_shared_at, Workers& workers, Run&& run) {
+  for (std::size_t color = 0; workers.count() > 1 && color < count; ++color)
+    if (is_shared_at(color)) return workers.together(run);
+  Member alone;
+  run(alone);
+}
+template <class Run>
+void together_if_any(std::span<const Range> colors, Workers& workers, Run&& run) {
+  together_if_any(
+      colors.size(), [&](std::size_t color) { return is_shared(colors[color]); }, workers, run);
+}
+
+/// Runs `run(index)` for what fitted no colour.
+template <class Run>
+void run_overflow(const Member& member, const Range& overflow, ColorOrder& order, Run&& run) {
+  if (overflow.begin == overflow.end) return;
+  order.begin_color(false);
+  if (!member.leads()) return;
+  for (int i = overflow.begin; i < overflow.end; ++i) run(i);
+}
+
+/// Runs `run(range)` for ranges of every colour in order, those of one colour in parallel, and for
+/// the overflow one by one.
+template <class Run>
+void for_each_range_by_color(std::span<const Range> colors, Range overflow, Workers& workers,
+                             Run&& run) {
+  together_if_any(colors, workers, [&](Member& member) {
+    ColorOrder order(member);
+    for (const Range& color : colors) {
+      order.begin_color(is_shared(color));
+      run_part(member, color, run);
+    }
+    run_overflow(member, overflow, order, [&](int i) { run(Range{i, i + 1}); });
+  });
+}
+
+/// The same for what asks for no order: each thread runs what it does in order too.
+template <class Run>
+void for_each_part_of_colors(std::span<const Range> colors, Range overflow, Workers& workers,
+                             Run&& run) {
+  together_if_any(colors, workers, [&](Member& member) {
+    for (const Range& color : colors) run_part(member, color, run);
+    if (member.leads() && overflow.begin < overflow.end) run(overflow);
+  });
+}
+
+}  // namespace cycloid::solver
