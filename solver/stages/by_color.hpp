@@ -1,6 +1,6 @@
 #pragma once
 
-#include <cstddef>
+#include <algorithm>
 #include <span>
 
 #include "solver/workers.hpp"
@@ -44,18 +44,9 @@ class ColorOrder {
   bool was_shared_ = false;
 };
 
-/// Runs `run(member)` on all threads if a colour of [0, count) is shared, else on the calling one.
-template <class IsShared, class Run>
-void together_if_any(std::size_t count, IsShared&& is_shared_at, Workers& workers, Run&& run) {
-  for (std::size_t color = 0; workers.count() > 1 && color < count; ++color)
-    if (is_shared_at(color)) return workers.together(run);
-  Member alone;
-  run(alone);
-}
-template <class Run>
-void together_if_any(std::span<const Range> colors, Workers& workers, Run&& run) {
-  together_if_any(
-      colors.size(), [&](std::size_t color) { return is_shared(colors[color]); }, workers, run);
+/// Whether it is worth to call other threads for these.
+inline bool is_any_shared(std::span<const Range> colors, const Workers& workers) {
+  return workers.count() > 1 && std::any_of(colors.begin(), colors.end(), is_shared);
 }
 
 /// Runs `run(index)` for what fitted no colour.
@@ -72,24 +63,34 @@ void run_overflow(const Member& member, const Range& overflow, ColorOrder& order
 template <class Run>
 void for_each_range_by_color(std::span<const Range> colors, Range overflow, Workers& workers,
                              Run&& run) {
-  together_if_any(colors, workers, [&](Member& member) {
+  const auto run_one = [&](int i) { run(Range{i, i + 1}); };
+  if (!is_any_shared(colors, workers)) {
+    for (const Range& color : colors)
+      if (color.begin < color.end) run(color);
+    for (int i = overflow.begin; i < overflow.end; ++i) run_one(i);
+    return;
+  }
+  workers.together([&](Member& member) {
     ColorOrder order(member);
     for (const Range& color : colors) {
       order.begin_color(is_shared(color));
       run_part(member, color, run);
     }
-    run_overflow(member, overflow, order, [&](int i) { run(Range{i, i + 1}); });
+    run_overflow(member, overflow, order, run_one);
   });
 }
 
-/// The same for what asks for no order: each thread runs what it does in order too.
+/// The same for what asks for no order.
 template <class Run>
 void for_each_part_of_colors(std::span<const Range> colors, Range overflow, Workers& workers,
                              Run&& run) {
-  together_if_any(colors, workers, [&](Member& member) {
+  auto run_parts = [&](Member& member) {
     for (const Range& color : colors) run_part(member, color, run);
     if (member.leads() && overflow.begin < overflow.end) run(overflow);
-  });
+  };
+  if (is_any_shared(colors, workers)) return workers.together(run_parts);
+  Member alone;
+  run_parts(alone);
 }
 
 }  // namespace cycloid::solver

@@ -214,9 +214,6 @@ void for_each_joint_by_color(Workers& workers, StepScratch<D>& scratch, OnPins&&
   const auto pins_of = [&](std::size_t color) {
     return of_pins.empty() ? Range{} : of_pins[color];
   };
-  const auto is_shared_at = [&](std::size_t color) {
-    return is_shared(pins_of(color)) || is_shared(single.colors[color]);
-  };
   const auto run_pins = [&](Range blocks) {
     with_blocks(scratch.pins,
                 [&]<int W>(PinBlocks<D, W>&) { on_pins(pin_range<D, W>(scratch, blocks)); });
@@ -228,15 +225,19 @@ void for_each_joint_by_color(Workers& workers, StepScratch<D>& scratch, OnPins&&
   const auto run_rows = [&](Range rows) {
     for (int i = rows.begin; i < rows.end; ++i) run_row(i);
   };
-  together_if_any(single.colors.size(), is_shared_at, workers, [&](Member& member) {
+  auto run_by_color = [&](Member& member) {
     ColorOrder order(member);
     for (std::size_t color = 0; color < single.colors.size(); ++color) {
-      order.begin_color(is_shared_at(color));
+      order.begin_color(is_shared(pins_of(color)) || is_shared(single.colors[color]));
       run_part(member, pins_of(color), run_pins);
       run_part(member, single.colors[color], run_rows);
     }
     run_overflow(member, single.overflow, order, run_row);
-  });
+  };
+  if (is_any_shared(of_pins, workers) || is_any_shared(single.colors, workers))
+    return workers.together(run_by_color);
+  Member alone;
+  run_by_color(alone);
 }
 
 /// What blocks of contacts are filled from. @pre prepare_bodies.
