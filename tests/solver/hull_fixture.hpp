@@ -6,6 +6,7 @@
 #include <random>
 #include <vector>
 
+#include "solver/definitions.hpp"
 #include "solver/solids/hull_builder.hpp"
 
 namespace cycloid::solver {
