@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
@@ -13,6 +14,14 @@ inline std::uint32_t root_of(std::vector<std::uint32_t>& parent, std::uint32_t e
     element = parent[element];
   }
   return element;
+}
+
+/// Makes one set of those of two elements. The lower root stays one, so that a set is named by its
+/// lowest element, in whatever order its elements were united.
+inline void unite(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b) {
+  a = root_of(parent, a);
+  b = root_of(parent, b);
+  parent[std::max(a, b)] = std::min(a, b);
 }
 
 }  // namespace cycloid::solver

@@ -171,9 +171,10 @@ class Member {
 
 /// A fixed pool that runs ranges. The only thread-aware code of the solver.
 ///
-/// The split into ranges of `grain` depends on the work alone, never on the number of threads, and
-/// every range writes what no other reads or writes; so which thread runs a range cannot be seen.
-/// On a target without threads the calling thread runs them all.
+/// Ranges of `grain` depend on the work alone, parts of a Member on the number of threads as well.
+/// Neither can be seen, nor which thread runs what: each writes what no other reads or writes at
+/// the same time, and what comes of an index does not depend on where a range begins or ends. On a
+/// target without threads the calling thread runs them all.
 class Workers {
  public:
   /// @pre 1 <= count <= 64; the calling thread is one of them.

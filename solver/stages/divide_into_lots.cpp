@@ -52,12 +52,8 @@ static bool share_out(const std::vector<MovingPair>& pairs, std::size_t bodies, 
 static void find_islands(const std::vector<MovingPair>& pairs, std::size_t bodies, Lots& lots) {
   lots.parent.resize(bodies);
   for (std::uint32_t slot = 0; slot < bodies; ++slot) lots.parent[slot] = slot;
-  for (const MovingPair& pair : pairs) {
-    if (!joins(pair)) continue;
-    const std::uint32_t a = root_of(lots.parent, pair.a);
-    const std::uint32_t b = root_of(lots.parent, pair.b);
-    lots.parent[std::max(a, b)] = std::min(a, b);
-  }
+  for (const MovingPair& pair : pairs)
+    if (joins(pair)) unite(lots.parent, pair.a, pair.b);
   lots.contacts.assign(bodies, 0);
   for (const MovingPair& pair : pairs) ++lots.contacts[root_of(lots.parent, one_of(pair))];
 }

@@ -1,4 +1,3 @@
-#include <algorithm>
 #include <cstring>
 #include <utility>
 
@@ -45,10 +44,7 @@ static void join_held(StepScratch<D>& scratch) {
     ++solver.pairs_of[mover_of(pair)];
     if (pair.a == kNone || pair.b == kNone) return;
     solver.island_of[pair.b] = kHeld;
-    if (tree[pair.a] == tree[pair.b]) return;
-    const std::uint32_t a = root_of(tree, pair.a);
-    const std::uint32_t b = root_of(tree, pair.b);
-    tree[std::max(a, b)] = std::min(a, b);
+    if (tree[pair.a] != tree[pair.b]) unite(tree, pair.a, pair.b);
   };
   for (const MovingPair& pair : scratch.colors.pairs) join(pair);
   for (const JointRow<D>& row : scratch.joint_rows)

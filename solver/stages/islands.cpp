@@ -10,16 +10,6 @@
 
 namespace cycloid::solver {
 
-/// The lower slot becomes the root, so that an island is named by its lowest body.
-static void join(std::vector<std::uint32_t>& parent, std::uint32_t a, std::uint32_t b) {
-  a = root_of(parent, a);
-  b = root_of(parent, b);
-  if (a < b)
-    parent[b] = a;
-  else
-    parent[a] = b;
-}
-
 template <int D>
 static bool drives(const Joint<D>& joint) {
   const bool runs = joint.motor == MotorKind::kSpeed && joint.motor_speed != 0.0f;
@@ -39,7 +29,7 @@ static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
   const auto link = [&](std::uint32_t a, std::uint32_t b, bool keep) {
     const bool a_moves = state.bodies[a].inverse_mass > 0.0f;
     const bool b_moves = state.bodies[b].inverse_mass > 0.0f;
-    if (a_moves && b_moves) join(parent, a, b);
+    if (a_moves && b_moves) unite(parent, a, b);
     const bool pushed = (!a_moves && active[a] != 0) || (!b_moves && active[b] != 0);
     if (keep || pushed) scratch.kept_awake[a_moves ? a : b] = 1;
   };
@@ -209,7 +199,7 @@ static void join_resting(const WorldState<D>& state, StepScratch<D>& scratch) {
   const auto link = [&](std::uint32_t a, std::uint32_t b, bool keep) {
     const bool a_rests = rests(a);
     const bool b_rests = rests(b);
-    if (a_rests && b_rests && !keep) return join(parent, a, b);
+    if (a_rests && b_rests && !keep) return unite(parent, a, b);
     const auto is_free = [&](std::uint32_t other) {
       return !keep && bodies.has_mass[other] == 0 && bodies.active[other] == 0;
     };

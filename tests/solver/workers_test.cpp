@@ -50,6 +50,7 @@ TEST(Members, SharePartsThatMakeUpTheRange) {
       });
       ASSERT_EQ(next.load(), threads);
       ASSERT_EQ(leaders.load(), 1);
+      // Total order: ranges that compare equal are the same.
       std::sort(parts.begin(), parts.end(), [](const Range& a, const Range& b) {
         return std::pair(a.begin, a.end) < std::pair(b.begin, b.end);
       });
