@@ -39,9 +39,13 @@ inline constexpr int kColorsMax = 28;
 
 /// The colour of each constraint.
 struct Colors {
-  std::vector<MovingPair> pairs;   ///< What it joins; of contacts alone.
-  std::vector<int> of;             ///< kColorsMax: none.
+  std::vector<std::uint8_t> of;    ///< kColorsMax: none.
   int sizes[kColorsMax + 1] = {};  ///< By colour.
+};
+
+/// What the live contacts of a tick join, and their colours, which are a function of that alone.
+struct ContactColors : Colors {
+  std::vector<MovingPair> pairs;
 };
 
 /// Whole islands that are solved from the first substep to the last, before or beside those of

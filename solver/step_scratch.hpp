@@ -116,6 +116,7 @@ struct KeptByWorld {
   PairCache<D> pair_cache;     ///< Whoever changes a pose, filter, shape or joint makes it forget.
   ActiveBodies active_bodies;  ///< Whoever changes a velocity, force or sleep touches it.
   ActiveContacts active_contacts;
+  ContactColors contact_colors;  ///< Of the last tick: at rest they are those of the next.
   HeldPairs<D> held_pairs;  ///< Of the last tick; whoever changes a shape makes it forget them.
   std::vector<UserRows<D>> user_rows;  ///< Registered by the user; not state.
   StepTrace* trace = nullptr;          ///< Of World::step_traced, while it runs.
@@ -190,11 +191,12 @@ struct StepScratch : ContactList<D> {
   bool met_many = false;                     ///< ... not listed: they are a good part of all.
   std::vector<std::uint8_t> inertia_turned;  ///< By body: its mass is of this substep's rotation.
   std::vector<std::uint32_t> used_colors;    ///< Bit set by body slot.
-  Colors colors;                             ///< Of live joints; then of live contacts.
+  Colors joint_colors;                       ///< Of live joints.
   std::vector<LiveJoint> live_joints;
   bool colored_joints = false;           ///< joint_coloring is of these, by colour.
   Coloring joint_coloring;               ///< `order` holds joint slots.
   Coloring contact_coloring;             ///< `order` holds places of live contacts.
+  std::vector<std::uint8_t> sorted_by;   ///< The colours that gave contact_coloring; else none.
   std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.
   Pins<D> pins;                          ///< Joints that are solved in lanes.
   Coloring single_rows;                  ///< `order` holds the places of all other joint rows.

@@ -56,6 +56,15 @@ static void use_no_color(std::size_t count, PairOf&& pair_of, std::vector<std::u
   }
 }
 
+/// Whether the live contacts join these pairs. @pre they are as many.
+template <int D, class PairOf>
+static bool all_join(const std::vector<LiveContact<D>>& live, PairOf&& pair_of,
+                     const std::vector<MovingPair>& pairs) {
+  for (std::size_t i = 0; i < live.size(); ++i)
+    if (pairs[i] != pair_of(live[i].body_a, live[i].body_b)) return false;
+  return true;
+}
+
 /// Gives each constraint, in order, the lowest colour that neither of its moving bodies has yet, or
 /// kColorsMax where there is none.
 template <class PairOf>
@@ -74,7 +83,7 @@ static void assign_colors(std::size_t count, PairOf&& pair_of, std::vector<std::
       if (pair.a != kNone) used[pair.a] |= 1u << color;
       if (pair.b != kNone) used[pair.b] |= 1u << color;
     }
-    colors.of[i] = color;
+    colors.of[i] = static_cast<std::uint8_t>(color);
     ++colors.sizes[color];
   }
 }
@@ -97,11 +106,59 @@ void sort_by_color(const Colors& colors, Coloring& coloring) {
     coloring.order[static_cast<std::size_t>(next[colors.of[i]]++)] = static_cast<int>(i);
 }
 
+/// The joints of which a body is awake, and their colouring. Where they are as they were, it is.
+template <int D, class PairOf>
+static void color_joints(const WorldState<D>& state, PairOf&& pair_of, StepScratch<D>& scratch) {
+  std::vector<LiveJoint>& joints = scratch.live_joints;
+  const bool same = list_live_joints(state, scratch.awake, pair_of, joints);
+  const Order order = state.header.tuning.order;
+  const bool were_colored = std::exchange(scratch.colored_joints, order == Order::kColor);
+  const bool keeps = same && were_colored && order == Order::kColor;
+  if (keeps) return;
+  scratch.islands_solved.joints_as_listed = scratch.islands_solved.joints_as_found = false;
+  if (order == Order::kColor) {
+    const auto pair_of_joint = [&](std::size_t i) { return joints[i].bodies; };
+    assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.joint_colors);
+    sort_by_color(scratch.joint_colors, scratch.joint_coloring);
+  } else {
+    const int count = static_cast<int>(joints.size());
+    list_in_order(count, order == Order::kReverse, scratch.joint_coloring);
+  }
+  name_slots(joints, scratch.joint_coloring);
+}
+
+/// What the live contacts join, and their colours. Where all join the same, these stay.
+template <int D, class PairOf>
+static void color_contacts(PairOf&& pair_of, StepScratch<D>& scratch) {
+  const std::vector<LiveContact<D>>& live = scratch.live;
+  ContactColors& colors = scratch.kept->contact_colors;
+  const bool as_many = colors.of.size() == live.size() && colors.pairs.size() == live.size();
+  if (as_many && all_join(live, pair_of, colors.pairs)) return;
+  colors.pairs.resize(live.size());
+  const auto pair_of_contact = [&](std::size_t i) {
+    return colors.pairs[i] = pair_of(live[i].body_a, live[i].body_b);
+  };
+  assign_colors(live.size(), pair_of_contact, scratch.used_colors, colors);
+}
+
+/// What the live contacts join, in one line without a colour.
+template <int D, class PairOf>
+static void line_up_contacts(bool reverse, PairOf&& pair_of, StepScratch<D>& scratch) {
+  ContactColors& colors = scratch.kept->contact_colors;
+  colors.of.clear();
+  std::fill(std::begin(colors.sizes), std::end(colors.sizes), 0);
+  colors.pairs.clear();
+  for (const LiveContact<D>& live : scratch.live)
+    colors.pairs.push_back(pair_of(live.body_a, live.body_b));
+  scratch.sorted_by.clear();
+  list_in_order(static_cast<int>(scratch.live.size()), reverse, scratch.contact_coloring);
+}
+
 /// Greedy colouring of the joints in slot order and of the contacts in the order of their shapes;
 /// or, where the tuning asks for an order, one line of each.
 ///
-/// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints,
-/// which is as it was where they are, for list_held whether it is, and the colour of each contact.
+/// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints, for
+/// list_held whether it is as it was, and what each contact joins and its colour.
 /// Serial, because each choice depends on those before; a function of ids alone, so not of workers
 /// or history.
 template <int D>
@@ -110,34 +167,13 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   const auto pair_of = [&](std::uint32_t a, std::uint32_t b) {
     return MovingPair{has_mass[a] != 0 ? a : kNone, has_mass[b] != 0 ? b : kNone};
   };
-  std::vector<LiveJoint>& joints = scratch.live_joints;
-  const bool same_joints = list_live_joints(state, scratch.awake, pair_of, joints);
   const Order order = state.header.tuning.order;
-  const bool were_colored = std::exchange(scratch.colored_joints, order == Order::kColor);
-  const bool keeps_joints = same_joints && were_colored && order == Order::kColor;
-  if (!keeps_joints)
-    scratch.islands_solved.joints_as_listed = scratch.islands_solved.joints_as_found = false;
-  scratch.colors.pairs.resize(scratch.live.size());
-  const auto pair_of_contact = [&](std::size_t i) {
-    return scratch.colors.pairs[i] = pair_of(scratch.live[i].body_a, scratch.live[i].body_b);
-  };
-  if (order != Order::kColor) {
-    const bool reverse = order == Order::kReverse;
-    list_in_order(static_cast<int>(joints.size()), reverse, scratch.joint_coloring);
-    name_slots(joints, scratch.joint_coloring);
-    list_in_order(static_cast<int>(scratch.live.size()), reverse, scratch.contact_coloring);
-    std::fill(std::begin(scratch.colors.sizes), std::end(scratch.colors.sizes), 0);
-    for (std::size_t i = 0; i < scratch.live.size(); ++i) pair_of_contact(i);
-    return;
-  }
   scratch.used_colors.resize(state.bodies.size());
-  if (!keeps_joints) {
-    const auto pair_of_joint = [&](std::size_t i) { return joints[i].bodies; };
-    assign_colors(joints.size(), pair_of_joint, scratch.used_colors, scratch.colors);
-    sort_by_color(scratch.colors, scratch.joint_coloring);
-    name_slots(joints, scratch.joint_coloring);
-  }
-  assign_colors(scratch.live.size(), pair_of_contact, scratch.used_colors, scratch.colors);
+  color_joints(state, pair_of, scratch);
+  if (order == Order::kColor)
+    color_contacts(pair_of, scratch);
+  else
+    line_up_contacts(order == Order::kReverse, pair_of, scratch);
 }
 
 template void color(const WorldState<2>&, StepScratch<2>&);

@@ -97,7 +97,7 @@ Statistics count_work(const WorldState<D>& state, Workers& workers, const StepSc
   statistics.pairs = static_cast<std::uint32_t>(scratch.pairs.size());
   statistics.contacts = static_cast<std::uint32_t>(state.contacts.size());
   for (int color = 0; color < kColorsMax; ++color)
-    if (scratch.colors.sizes[color] > 0) ++statistics.colors;
+    if (scratch.kept->contact_colors.sizes[color] > 0) ++statistics.colors;
   count_rows(state, workers, scratch, statistics);
   if (!scratch.lots.all.empty())
     statistics.lots = static_cast<std::uint32_t>(scratch.lots.all.size());

@@ -85,17 +85,28 @@ static bool find_lots(const std::vector<MovingPair>& pairs, std::uint32_t wanted
   return 2 * std::size_t{most} <= pairs.size();
 }
 
+/// Lists the contacts by colour. Where it was done last by the same colours, of whatever world,
+/// that list stands.
+template <int D>
+static void sort_undivided(StepScratch<D>& scratch) {
+  const ContactColors& colors = scratch.kept->contact_colors;
+  if (!colors.of.empty() && scratch.sorted_by == colors.of) return;
+  sort_by_color(colors, scratch.contact_coloring);
+  scratch.sorted_by.assign(colors.of.begin(), colors.of.end());
+}
+
 /// Lists the contacts lot by lot, those of each colour after colour.
 template <int D>
 static void sort_contacts(StepScratch<D>& scratch) {
   Coloring& coloring = scratch.contact_coloring;
   Lots& lots = scratch.lots;
-  coloring.order.resize(scratch.colors.pairs.size());
+  scratch.sorted_by.clear();
+  coloring.order.resize(scratch.kept->contact_colors.pairs.size());
   counting_sort(
-      scratch.colors.pairs.size(), lots.all.size() * kColorsMax,
+      scratch.kept->contact_colors.pairs.size(), lots.all.size() * kColorsMax,
       [&](std::size_t i) {
         return lots.of_contact[i] * std::size_t{kColorsMax} +
-               static_cast<std::size_t>(scratch.colors.of[i]);
+               std::size_t{scratch.kept->contact_colors.of[i]};
       },
       lots.ends, [&](std::size_t i, std::size_t to) { coloring.order[to] = static_cast<int>(i); });
   coloring.colors.clear();
@@ -133,7 +144,7 @@ template <int D>
 void divide_into_lots(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch) {
   Lots& lots = scratch.lots;
-  const std::vector<MovingPair>& pairs = scratch.colors.pairs;
+  const std::vector<MovingPair>& pairs = scratch.kept->contact_colors.pairs;
   lots.all.clear();
   scratch.moving_bodies.assign(scratch.awake_bodies.begin(), scratch.awake_bodies.end());
   if (context.tuning.order != Order::kColor) return;
@@ -141,7 +152,7 @@ void divide_into_lots(const StepContext<D>& context, const WorldState<D>& state,
     const std::uint32_t wanted = context.lot_contacts > 0 ? context.lot_contacts : kLotContacts;
     if (pairs.size() < 2 * std::size_t{wanted} || !may_divide(context.tuning, scratch))
       return false;
-    if (scratch.colors.sizes[kColorsMax] > 0) return false;
+    if (scratch.kept->contact_colors.sizes[kColorsMax] > 0) return false;
     if (share_out(pairs, state.bodies.size(), lots)) return true;
     const bool tries = state.header.tick % (1 + pairs.size() / kContactsPerTick) == 0;
     if (tries && find_lots(pairs, wanted, state.bodies.size(), lots))
@@ -149,7 +160,7 @@ void divide_into_lots(const StepContext<D>& context, const WorldState<D>& state,
     lots.of_body.clear();
     return false;
   };
-  if (!find()) return sort_by_color(scratch.colors, scratch.contact_coloring);
+  if (!find()) return sort_undivided(scratch);
   lots.all.assign(lots.count, {});
   sort_contacts(scratch);
   sort_bodies(scratch);

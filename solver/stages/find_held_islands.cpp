@@ -46,7 +46,7 @@ static void join_held(StepScratch<D>& scratch) {
     solver.island_of[pair.b] = kHeld;
     if (tree[pair.a] != tree[pair.b]) unite(tree, pair.a, pair.b);
   };
-  for (const MovingPair& pair : scratch.colors.pairs) join(pair);
+  for (const MovingPair& pair : scratch.kept->contact_colors.pairs) join(pair);
   for (const JointRow<D>& row : scratch.joint_rows)
     if (is_held(row)) join(bodies_of(row));
 }
@@ -78,7 +78,7 @@ static void number_islands(StepScratch<D>& scratch) {
 template <int D>
 void find_held_islands(StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  const std::vector<MovingPair>& pairs = scratch.colors.pairs;
+  const std::vector<MovingPair>& pairs = scratch.kept->contact_colors.pairs;
   const bool same_joints = std::exchange(solver.joints_as_found, true);
   if (same_joints && solver.tree.size() == scratch.masses.size() && are_as_found(pairs, solver))
     return;

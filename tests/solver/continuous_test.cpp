@@ -1,5 +1,6 @@
 #include <gtest/gtest.h>
 
+#include "solver/motion.hpp"
 #include "tests/solver/world_fixture.hpp"
 
 namespace cycloid::solver {
