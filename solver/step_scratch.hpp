@@ -160,8 +160,9 @@ struct StepScratch : ContactList<D> {
   KeptByWorld<D>* kept = nullptr;  ///< Of the world whose step it is lent for.
   std::vector<typename BoundsTree<D>::Leaf> leaves;
   std::vector<std::uint32_t> looking;  ///< Shapes that look for their candidates anew.
-  std::vector<std::uint32_t> leaving;  ///< Shapes that left their fat boxes.
-  std::vector<std::vector<std::uint32_t>> leaving_chunks;
+  std::vector<typename BoundsTree<D>::Leaf> leaving;  ///< Fat boxes of shapes that left theirs.
+  std::vector<std::vector<typename BoundsTree<D>::Leaf>> leaving_chunks;
+  std::vector<std::vector<std::uint32_t>> slot_chunks;  ///< For whoever lists slots.
   std::vector<std::vector<ShapePair>> pair_chunks;
   std::vector<ShapePair> fresh_candidates;  ///< Of those that look.
   std::vector<CandidateRange> candidate_ranges;
@@ -212,6 +213,7 @@ struct StepScratch : ContactList<D> {
   std::vector<std::uint32_t> fast_of_shape;  ///< By shape: place in fast_bodies + 1, or 0.
   std::vector<Bounds<D>> ways;               ///< By shape, of those that have one.
   std::vector<WayIs> way_is;                 ///< By shape.
+  std::vector<std::uint32_t> straying;       ///< Shapes whose way leaves but the narrow box.
   std::vector<std::uint32_t> searching;      ///< Shapes whose way leaves what their lists are of.
   std::vector<ShapePair> some_pairs;         ///< For list_meetings to work in.
   std::vector<ShapePair> meetings;           ///< Which may meet on the way of a fast body.

@@ -25,18 +25,29 @@ static std::uint32_t spread_bits(std::uint32_t x) {
   return kSpread[x & 255u] | kSpread[(x >> 8) & 255u] << (8 * D);
 }
 
+/// Cells along each axis of a box of the world, whose centres of boxes become codes.
 template <int D>
-static std::uint32_t morton_code(const Bounds<D>& box, const Bounds<D>& world) {
-  constexpr float kCells = static_cast<float>((1 << Dim<D>::kMortonBits) - 1);
-  std::uint32_t code = 0;
-  for (int i = 0; i < D; ++i) {
-    const float extent = max(world.upper[i] - world.lower[i], 1.0e-6f);
-    const float centre = 0.5f * (box.lower[i] + box.upper[i]);
-    const float cell = clamp((centre - world.lower[i]) / extent * kCells, 0.0f, kCells);
-    code |= spread_bits<D>(static_cast<std::uint32_t>(cell)) << i;
+class MortonCells {
+ public:
+  explicit MortonCells(const Bounds<D>& world) : lower_(world.lower) {
+    for (int i = 0; i < D; ++i)
+      per_length_[i] = kCells / max(world.upper[i] - world.lower[i], 1.0e-6f);
   }
-  return code;
-}
+  std::uint32_t code_of(const Bounds<D>& box) const {
+    std::uint32_t code = 0;
+    for (int i = 0; i < D; ++i) {
+      const float centre = 0.5f * (box.lower[i] + box.upper[i]);
+      const float cell = clamp((centre - lower_[i]) * per_length_[i], 0.0f, kCells);
+      code |= spread_bits<D>(static_cast<std::uint32_t>(cell)) << i;
+    }
+    return code;
+  }
+
+ private:
+  static constexpr float kCells = static_cast<float>((1 << Dim<D>::kMortonBits) - 1);
+  Vec<D> lower_;
+  Vec<D> per_length_;  ///< 1/m
+};
 
 /// By Morton code, and by id where two codes are the same: a crowd in one cell. Keys are integers
 /// that no two leaves share, so there is one order of them, whatever a library's sort does with
@@ -60,39 +71,50 @@ void BoundsTree<D>::sort_keys() {
 
 template <int D>
 void BoundsTree<D>::build(std::vector<Leaf>& leaves) {
-  keys_.clear();
-  leaves_.clear();
+  leaves_.resize(leaves.size());
   if (leaves.empty()) return;
   Bounds<D> world = leaves[0].bounds;
   for (const Leaf& leaf : leaves) world = merged(world, leaf.bounds);
+  const MortonCells<D> cells(world);
+  keys_.resize(leaves.size());
   for (std::uint32_t i = 0; i < leaves.size(); ++i) {
-    const std::uint64_t code = morton_code(leaves[i].bounds, world);
-    keys_.push_back({(code << 32) | leaves[i].id, i});
+    const std::uint64_t code = cells.code_of(leaves[i].bounds);
+    keys_[i] = {(code << 32) | leaves[i].id, i};
   }
   sort_keys();
-  for (const Key& key : keys_) leaves_.push_back(leaves[key.leaf]);
+  for (std::size_t rank = 0; rank < leaves.size(); ++rank) leaves_[rank] = leaves[keys_[rank].leaf];
   build_rows();
 }
 
+/// Appends rows of so many boxes, of which only the last has empty places.
 template <int D>
-void BoundsTree<D>::put(int level, int child, const Bounds<D>& box) {
-  const auto row = static_cast<std::size_t>(first_row_[level] + child / BoundsRow<D>::kBoxes);
-  if (row == rows_.size()) rows_.push_back(BoundsRow<D>::empty());
-  rows_[row].set(child % BoundsRow<D>::kBoxes, box);
+template <class BoxOf>
+void BoundsTree<D>::add_rows(int count, BoxOf&& box_of) {
+  constexpr int kBoxes = BoundsRow<D>::kBoxes;
+  for (int begin = 0; begin < count; begin += kBoxes) {
+    BoundsRow<D> row;
+    for (int place = 0; place < kBoxes; ++place) {
+      if (begin + place < count)
+        row.set(place, box_of(begin + place));
+      else
+        row.clear(place);
+    }
+    rows_.push_back(row);
+  }
 }
 
 template <int D>
 void BoundsTree<D>::build_rows() {
   rows_.clear();
   first_row_[0] = 0;
-  for (int rank = 0; rank < size(); ++rank) put(0, rank, leaf(rank).bounds);
+  add_rows(size(), [&](int rank) -> const Bounds<D>& { return leaf(rank).bounds; });
   for (levels_ = 1;; ++levels_) {
     const int begin = first_row_[levels_ - 1];
     const int end = static_cast<int>(rows_.size());
     if (end - begin == 1) return;
     first_row_[levels_] = end;
-    for (int row = begin; row < end; ++row)
-      put(levels_, row - begin, rows_[static_cast<std::size_t>(row)].all());
+    add_rows(end - begin,
+             [&](int child) { return rows_[static_cast<std::size_t>(begin + child)].all(); });
   }
 }
 

@@ -41,7 +41,8 @@ class BoundsTree {
  private:
   bool search_on(BoundsSearch<D>& search, FoundBoxes& found) const;
   void sort_keys();
-  void put(int level, int child, const Bounds<D>& box);
+  template <class BoxOf>
+  void add_rows(int count, BoxOf&& box_of);
   void build_rows();
 
   std::vector<Leaf> leaves_;

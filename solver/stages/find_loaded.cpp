@@ -86,7 +86,7 @@ void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>
         if ((block.loaded >> lane & 1) != 0) add(block.body_a[lane], block.body_b[lane], loaded);
     }
   };
-  list_in_chunks(workers, static_cast<int>(blocks.size()), kJointGrain, scratch.leaving_chunks,
+  list_in_chunks(workers, static_cast<int>(blocks.size()), kJointGrain, scratch.slot_chunks,
                  solver.loaded, list_contacts);
   const auto list_joints = [&](Range range, std::vector<std::uint32_t>& loaded) {
     for (int i = range.begin; i < range.end; ++i) {
@@ -95,7 +95,7 @@ void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>
     }
   };
   list_in_chunks(workers, static_cast<int>(scratch.joint_rows.size()), kLookGrain,
-                 scratch.leaving_chunks, solver.loaded, list_joints);
+                 scratch.slot_chunks, solver.loaded, list_joints);
   solver.acts = !solver.loaded.empty();
 }
 

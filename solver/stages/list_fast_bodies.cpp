@@ -114,7 +114,7 @@ template <int D>
 static void mark_pushed(const StepContext<D>& context, Workers& workers, StepScratch<D>& scratch) {
   std::vector<std::uint32_t>& pushed = scratch.looking;
   pushed.clear();
-  list_in_chunks(workers, static_cast<int>(scratch.live.size()), kLookGrain, scratch.leaving_chunks,
+  list_in_chunks(workers, static_cast<int>(scratch.live.size()), kLookGrain, scratch.slot_chunks,
                  pushed, [&](Range places, std::vector<std::uint32_t>& list) {
                    list_pushed(context, scratch, places, list);
                  });

@@ -90,18 +90,17 @@ static void mark_ways(const StepContext<D>& context, const WorldState<D>& state,
   const PairCache<D>& cache = scratch.kept->pair_cache;
   scratch.ways.resize(state.shapes.size());
   scratch.way_is.assign(state.shapes.size(), WayIs::kUnknown);
-  scratch.leaving.clear();
+  scratch.straying.clear();
   scratch.searching.clear();
   std::vector<std::uint32_t>& outside = scratch.looking;
   outside.clear();
   list_in_chunks(workers, static_cast<int>(scratch.fast_bodies.size()), kPairGrain,
-                 scratch.leaving_chunks, outside,
-                 [&](Range range, std::vector<std::uint32_t>& out) {
+                 scratch.slot_chunks, outside, [&](Range range, std::vector<std::uint32_t>& out) {
                    list_outside(context, state, range, scratch, out);
                  });
   for (const std::uint32_t s : outside) {
     const bool is_near = cache.active[s] != 0 && lies_in(scratch.ways[s], cache.fat.box(s));
-    (is_near ? scratch.leaving : scratch.searching).push_back(s);
+    (is_near ? scratch.straying : scratch.searching).push_back(s);
   }
 }
 
@@ -257,9 +256,9 @@ void list_meetings(const StepContext<D>& context, const WorldState<D>& state, Wo
   mark_ways(context, state, workers, scratch);
   const std::vector<ShapePair>& candidates = scratch.kept->pair_cache.candidates;
   std::vector<std::uint32_t>& searching = scratch.searching;
-  const bool many_leave = scratch.leaving.size() * kCandidatesPerSearch > candidates.size();
+  const bool many_leave = scratch.straying.size() * kCandidatesPerSearch > candidates.size();
   if (!many_leave)
-    searching.insert(searching.end(), scratch.leaving.begin(), scratch.leaving.end());
+    searching.insert(searching.end(), scratch.straying.begin(), scratch.straying.end());
   for (const std::uint32_t s : searching) scratch.way_is[s] = WayIs::kSearched;
   std::vector<ShapePair>& some = scratch.some_pairs;
   some.clear();

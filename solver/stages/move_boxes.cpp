@@ -55,15 +55,28 @@ static void find_boxes(const StepContext<2>& context, const WorldState<2>& state
   });
 }
 
-/// Moves the boxes of these shapes, and lists which left their fat ones. None is left in `moving`.
+/// The fat box of a shape that left the one it had.
+template <int D>
+static Bounds<D> next_fat_box(const StepContext<D>& context, const WorldState<D>& state,
+                              const PairCache<D>& cache, std::uint32_t shape) {
+  const Bounds<D>& box = cache.boxes[shape];
+  const Vec<D> flight = context.tick_s * state.bodies[state.shapes[shape].body].velocity;
+  const float ticks =
+      cache.fat.contains(shape) ? fat_ticks(cache.seen[shape]) : first_fat_ticks(box, flight);
+  return fattened(box, flight, ticks);
+}
+
+/// Moves the boxes of these shapes, and lists the next fat ones of those that left theirs. None is
+/// left in `moving`.
 template <int D>
 static void move_boxes_of(const StepContext<D>& context, const WorldState<D>& state,
                           MovingShapes& moving, PairCache<D>& cache,
-                          std::vector<std::uint32_t>& leaving) {
+                          std::vector<typename BoundsTree<D>::Leaf>& leaving) {
   find_boxes(context, state, moving, cache);
   for (int i = 0; i < moving.count; ++i) {
     const std::uint32_t s = moving.shapes[i];
-    if (!cache.fat.contains(s) || !lies_in(cache.boxes[s], cache.fat.box(s))) leaving.push_back(s);
+    if (!cache.fat.contains(s) || !lies_in(cache.boxes[s], cache.fat.box(s)))
+      leaving.push_back({next_fat_box(context, state, cache, s), s});
   }
   moving.count = 0;
 }
@@ -108,7 +121,7 @@ struct Asking {
   const StepContext<D>& context;
   const WorldState<D>& state;
   PairCache<D>& cache;
-  std::vector<std::uint32_t>& leaving;
+  std::vector<typename BoundsTree<D>::Leaf>& leaving;
   FetchedBodies fetched;
   MovingShapes moving;
   bool flips = false;  ///< A shape takes part that did not, or the other way round.
@@ -138,7 +151,7 @@ static void look_at_fetched(Asking<D>& asking) {
 template <int D>
 static void ask_bodies(const StepContext<D>& context, const WorldState<D>& state, Range range,
                        StepScratch<D>& scratch, AskedTally& tally,
-                       std::vector<std::uint32_t>& leaving) {
+                       std::vector<typename BoundsTree<D>::Leaf>& leaving) {
   ActiveBodies& bodies = scratch.kept->active_bodies;
   std::uint32_t asleep = 0;
   std::uint32_t asleep_before = 0;
@@ -199,19 +212,15 @@ bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Worke
   list_to_ask(state, bodies);
   list_in_chunks(workers, static_cast<int>(bodies.to_ask.size()), kBodyGrain,
                  scratch.leaving_chunks, scratch.leaving,
-                 [&](Range range, std::vector<std::uint32_t>& leaving) {
+                 [&](Range range, std::vector<typename BoundsTree<D>::Leaf>& leaving) {
                    ask_bodies(context, state, range, scratch, tally, leaving);
                  });
   bodies.asleep += static_cast<std::uint32_t>(tally.asleep.sum());
   bodies.asleep -= static_cast<std::uint32_t>(tally.asleep_before.sum());
   scratch.bodies_asleep = bodies.asleep;
   if (tally.changes.sum() > 0) list_active(bodies);
-  for (const std::uint32_t s : scratch.leaving) {
-    const Body<D>& body = state.bodies[state.shapes[s].body];
-    const Vec<D> flight = context.tick_s * body.velocity;
-    const float ticks =
-        cache.fat.contains(s) ? fat_ticks(cache.seen[s]) : first_fat_ticks(cache.boxes[s], flight);
-    cache.fat.put(s, fattened(cache.boxes[s], flight, ticks));
+  for (const auto& [box, s] : scratch.leaving) {
+    cache.fat.put(s, box);
     if (cache.looks[s] != 0) continue;
     cache.looks[s] = 1;
     scratch.looking.push_back(s);
