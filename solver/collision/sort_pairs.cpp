@@ -1,6 +1,7 @@
 #include "solver/collision/sort_pairs.hpp"
 
 #include <algorithm>
+#include <bit>
 
 #include "solver/radix_sort.hpp"
 
@@ -14,6 +15,13 @@ void sort_pairs(std::uint32_t shapes, std::vector<ShapePair>& room, std::vector<
     return;
   }
   room.resize(pairs.size());
+  const int bits = std::bit_width(shapes - 1);
+  if (bits > kRadixSortBits && 2 * bits <= 32) {  // As one number they have a digit less.
+    const auto number_of = [&](const ShapePair& pair) {
+      return pair.shape_a << bits | pair.shape_b;
+    };
+    return radix_sort(number_of({shapes - 1, shapes - 1}), number_of, room, pairs);
+  }
   radix_sort(
       shapes - 1, [](const ShapePair& pair) { return pair.shape_b; }, room, pairs);
   radix_sort(
