@@ -122,13 +122,16 @@ static void mark_pushed(const StepContext<D>& context, Workers& workers, StepScr
 }
 
 template <int D>
-static void list_shapes_of_fast(const WorldState<D>& state, StepScratch<D>& scratch) {
+static void list_shapes_of_fast(const WorldState<D>& state, Workers& workers,
+                                StepScratch<D>& scratch) {
   scratch.fast_of_shape.assign(state.shapes.size(), 0);
-  for (std::uint32_t place = 0; place < scratch.fast_bodies.size(); ++place) {
-    const Body<D>& body = state.bodies[scratch.fast_bodies[place].slot];
-    for (std::uint32_t s = body.first_shape; s != kNone; s = state.shapes[s].next)
-      scratch.fast_of_shape[s] = place + 1;
-  }
+  workers.parallel_for(static_cast<int>(scratch.fast_bodies.size()), kBodyGrain, [&](Range range) {
+    for (int place = range.begin; place < range.end; ++place) {
+      const std::uint32_t slot = scratch.fast_bodies[static_cast<std::size_t>(place)].slot;
+      for (std::uint32_t s = state.bodies[slot].first_shape; s != kNone; s = state.shapes[s].next)
+        scratch.fast_of_shape[s] = static_cast<std::uint32_t>(place) + 1;
+    }
+  });
 }
 
 /// The bodies that move so far in the tick that they could pass through something, or over its
@@ -141,7 +144,7 @@ void list_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
                       StepScratch<D>& scratch) {
   list_fast(context, state, workers, scratch);
   if (scratch.fast_bodies.empty()) return;
-  list_shapes_of_fast(state, scratch);
+  list_shapes_of_fast(state, workers, scratch);
   mark_pushed(context, workers, scratch);
 }
 
