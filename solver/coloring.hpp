@@ -39,11 +39,12 @@ inline constexpr int kColorsMax = 28;
 
 /// The colour of each constraint.
 struct Colors {
-  std::vector<std::uint8_t> of;    ///< kColorsMax: none.
+  std::vector<std::uint8_t> of;    ///< kColorsMax: it fitted none.
   int sizes[kColorsMax + 1] = {};  ///< By colour.
 };
 
-/// What the live contacts of a tick join, and their colours, which are a function of that alone.
+/// What the live contacts of a tick join, and their colours, which are a function of that alone;
+/// none where they stand in one line instead.
 struct ContactColors : Colors {
   std::vector<MovingPair> pairs;
 };

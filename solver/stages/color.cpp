@@ -56,10 +56,11 @@ static void use_no_color(std::size_t count, PairOf&& pair_of, std::vector<std::u
   }
 }
 
-/// Whether the live contacts join these pairs. @pre they are as many.
+/// Whether the live contacts join these pairs.
 template <int D, class PairOf>
 static bool all_join(const std::vector<LiveContact<D>>& live, PairOf&& pair_of,
                      const std::vector<MovingPair>& pairs) {
+  if (pairs.size() != live.size()) return false;
   for (std::size_t i = 0; i < live.size(); ++i)
     if (pairs[i] != pair_of(live[i].body_a, live[i].body_b)) return false;
   return true;
@@ -132,8 +133,7 @@ template <int D, class PairOf>
 static void color_contacts(PairOf&& pair_of, StepScratch<D>& scratch) {
   const std::vector<LiveContact<D>>& live = scratch.live;
   ContactColors& colors = scratch.kept->contact_colors;
-  const bool as_many = colors.of.size() == live.size() && colors.pairs.size() == live.size();
-  if (as_many && all_join(live, pair_of, colors.pairs)) return;
+  if (!colors.of.empty() && all_join(live, pair_of, colors.pairs)) return;
   colors.pairs.resize(live.size());
   const auto pair_of_contact = [&](std::size_t i) {
     return colors.pairs[i] = pair_of(live[i].body_a, live[i].body_b);

@@ -37,6 +37,30 @@ TEST(Continuous, NoBallPassesAThinWallAtAnySpeedAngleOrPhase) {
       }
 }
 
+// More than threads take one by one, each from its own distance at its own speed.
+TEST(Continuous, ManyBallsAreStoppedTheSameByAnyNumberOfThreads) {
+  std::vector<std::uint64_t> digests;
+  for (const int workers : {1, 2, 3}) {
+    World<2> world = make_world(restless());
+    ASSERT_TRUE(world.set_workers(workers).ok());
+    add_wall(world, 3.0f);
+    std::vector<BodyId> balls;
+    for (int i = 0; i < 700; ++i) {
+      BodyDef<2> def;
+      def.position = {{-0.01f * static_cast<float>(i % 97), 0.13f * static_cast<float>(i - 350)}};
+      def.velocity = {{50.0f + static_cast<float>(i), 0.0f}};
+      balls.push_back(add(world, def, ball<2>(0.05f)));
+    }
+    for (int tick = 0; tick < 10; ++tick) {
+      step(world, 1);
+      for (const BodyId ball : balls) ASSERT_LT(view(world, ball).position[0], 3.0f);
+    }
+    digests.push_back(world.digest());
+  }
+  EXPECT_EQ(digests[1], digests[0]);
+  EXPECT_EQ(digests[2], digests[0]);
+}
+
 TEST(Continuous, ABulletHitsAWallThatAnotherBodyHides) {
   World<2> world = make_world(restless());
   add_wall(world, 3.0f);
