@@ -203,7 +203,9 @@ void add_join(CLI::App& app, Action& action) {
   command->add_option("--ticks", options->ticks, "Leave after so many ticks; 0: stay")
       ->capture_default_str();
   command->add_option("--name", options->name, "For the server's log");
-  command->add_option("--workers", options->workers, "Threads; changes no bit")
+  command
+      ->add_option("--workers", options->workers,
+                   "Threads at most: one alone while that is faster; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   command->add_option("--room", options->room, "Its name, where the server has several");

@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <array>
-#include <chrono>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -8,6 +7,7 @@
 #include "cli/commands.hpp"
 #include "cli/match.hpp"
 #include "cli/output.hpp"
+#include "cli/steady_time.hpp"
 #include "scenes/reasons.hpp"
 #include "scenes/stage_profile.hpp"
 
@@ -21,11 +21,6 @@ struct ProfileCommand {
   int rounds = 5;
   StepSetting setting;
 };
-
-std::uint64_t steady_ns() {
-  const auto now = std::chrono::steady_clock::now().time_since_epoch();
-  return static_cast<std::uint64_t>(std::chrono::nanoseconds(now).count());
-}
 
 std::vector<scenes::SeatInput> script_of(const scenes::Scene& scene,
                                          const scenes::Simulation& simulation) {

@@ -8,6 +8,7 @@
 #include "cli/output.hpp"
 #include "cli/replaying.hpp"
 #include "cli/run_log.hpp"
+#include "cli/steady_time.hpp"
 #include "solver/version.hpp"
 
 namespace cycloid::cli {
@@ -62,7 +63,11 @@ class PoseTable {
 
 Exit run_scene(const RunOptions& options, bool json) {
   const scenes::Scene scene = load_scene(options.scene);
-  scenes::Simulation simulation = make_simulation(scene, options.workers, options.lanes);
+  scenes::Simulation simulation = make_simulation(scene, 1, options.lanes);
+  if (const solver::Error error = simulation.set_workers_at_most(options.workers, &steady_ns);
+      !error.ok()) {
+    throw Failure(kExitUsage, "--workers: " + error_text(error));
+  }
   std::optional<RunLog> log;
   if (!options.log.empty()) log.emplace(options.log, scene, options.keyframe_every);
 
@@ -113,7 +118,9 @@ void add_run(CLI::App& app, Action& action) {
       ->check(CLI::PositiveNumber);
   command->add_option("--digest-every", options->digest_every, "Ticks between lines; 0: the last")
       ->capture_default_str();
-  command->add_option("--workers", options->workers, "Threads; changes no bit")
+  command
+      ->add_option("--workers", options->workers,
+                   "Threads at most: one alone while that is faster; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   add_lanes_option(command, options->lanes);

@@ -228,7 +228,9 @@ void add_serve(CLI::App& app, Action& action) {
   serving->add_option("--tick-rate", command->tick_rate, "Ticks per second; 0: the scene's")
       ->capture_default_str()
       ->check(CLI::Range(0.0, 10000.0));
-  serving->add_option("--workers", options.workers, "Threads of the step; changes no bit")
+  serving
+      ->add_option("--workers", options.workers,
+                   "Threads of a step at most: one alone while that is faster; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   serving->add_option("--log", options.log, "Write the match to this file, which must be new");

@@ -9,6 +9,11 @@
 namespace cycloid::client {
 namespace {
 
+std::uint64_t steady_ns() {
+  const auto now = std::chrono::steady_clock::now().time_since_epoch();
+  return static_cast<std::uint64_t>(std::chrono::nanoseconds(now).count());
+}
+
 /// What may be otherwise in a moment: the old connection of our own seat may still hold it.
 bool may_pass(protocol::Refusal code) {
   switch (code) {
@@ -68,7 +73,7 @@ void Visit::begin(std::chrono::milliseconds wait) {
   working_since_.reset();
   auto simulation = scenes::Simulation::create(options_.scene);
   solver::Error error = simulation.ok() ? solver::Error{} : simulation.error();
-  if (error.ok()) error = simulation.value().set_workers(options_.workers);
+  if (error.ok()) error = simulation.value().set_workers_at_most(options_.workers, &steady_ns);
   if (!error.ok()) {
     report_.end = End::kFailed;
     report_.reason = std::string("the scene cannot run: ") + error.field;

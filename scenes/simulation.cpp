@@ -6,6 +6,7 @@
 #include "scenes/build.hpp"
 #include "scenes/characters.hpp"
 #include "scenes/controls.hpp"
+#include "scenes/thread_choice.hpp"
 #include "solver/encoding.hpp"
 #include "solver/floating_point_mode.hpp"
 
@@ -13,6 +14,8 @@ namespace cycloid::scenes {
 
 struct Simulation::Running {
   std::variant<std::unique_ptr<Built<2>>, std::unique_ptr<Built<3>>> built;
+  Clock now_ns = nullptr;  ///< Null where no choice is to be made.
+  ThreadChoice threads;
 
   /// Calls f with the `Built` of whichever dimension runs.
   template <class F>
@@ -87,7 +90,16 @@ float Simulation::tick_s() const {
   return running_->visit([](const auto& built) { return built.world.tick_s(); });
 }
 
+solver::Error Simulation::set_workers_at_most(int workers, Clock now_ns) {
+  const solver::Error error = set_workers(workers);
+  if (!error.ok() || workers == 1) return error;
+  running_->now_ns = now_ns;
+  running_->threads = {};
+  return error;
+}
+
 solver::Error Simulation::set_workers(int workers) {
+  running_->now_ns = nullptr;
   return running_->visit([&](auto& built) { return built.world.set_workers(workers); });
 }
 
@@ -105,6 +117,15 @@ solver::Error Simulation::set_lanes(int lanes) {
 }
 
 solver::Error Simulation::step(std::span<const SeatInput> inputs) {
+  if (running_->now_ns == nullptr) return step_once(inputs);
+  running_->visit([&](auto& built) { built.world.rest_workers(running_->threads.is_alone()); });
+  const std::uint64_t begin_ns = running_->now_ns();
+  const solver::Error error = step_once(inputs);
+  running_->threads.took(running_->now_ns() - begin_ns);
+  return error;
+}
+
+solver::Error Simulation::step_once(std::span<const SeatInput> inputs) {
   if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
   // Before the controls, which compute too.
   if (!solver::floating_point_mode_is_ieee())

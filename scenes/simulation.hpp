@@ -67,6 +67,11 @@ class Simulation {
   float tick_s() const;
   /// 1 to 64 threads; changes no bit.
   solver::Error set_workers(int workers);
+  /// Nanoseconds from some start, never backwards. The host's, because a world knows no clock.
+  using Clock = std::uint64_t (*)();
+  /// As set_workers, but a step takes one thread alone as long as that is faster (ThreadChoice), by
+  /// the host's clock, which is read before and after it; with one worker it is not.
+  solver::Error set_workers_at_most(int workers, Clock now_ns);
   /// For many simulations that step in turn; changes no bit. @pre no step runs.
   void use_step_memory(const StepMemories& memories);
   /// 1, 4, 8 or 16 contacts an instruction, else kInvalid "lanes"; changes no bit.
@@ -122,6 +127,7 @@ class Simulation {
 
  private:
   struct Running;
+  solver::Error step_once(std::span<const SeatInput> inputs);
   explicit Simulation(std::unique_ptr<Running> running);
   std::unique_ptr<Running> running_;
 };

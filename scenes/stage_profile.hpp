@@ -11,8 +11,7 @@ namespace cycloid::scenes {
 /// every phase is a tenth of the step of a small world. Changes no bit.
 class StageProfile {
  public:
-  /// Nanoseconds from some start, never backwards. The host's, because a world knows no clock.
-  using Clock = std::uint64_t (*)();
+  using Clock = Simulation::Clock;
 
   struct Stage {
     std::uint64_t time_ns = 0;

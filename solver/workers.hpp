@@ -183,12 +183,15 @@ class Workers {
   Workers(const Workers&) = delete;
   Workers& operator=(const Workers&) = delete;
 
-  int count() const { return count_; }
+  /// Threads that take part, the calling one included.
+  int count() const { return rests_ ? 1 : count_; }
+  /// Lets all but the calling thread rest, or take part again; none is ended. @pre no job runs.
+  void rest(bool rests) { rests_ = rests; }
 
   /// Calls run(Range) for consecutive ranges that cover [0, size); returns when all are done.
   template <class Run>
   void parallel_for(int size, int grain, Run&& run) {
-    if (size <= grain || count_ == 1) {
+    if (size <= grain || count() == 1) {
       for (int begin = 0; begin < size; begin += grain)
         run(Range{begin, begin + grain < size ? begin + grain : size});
       return;
@@ -202,7 +205,7 @@ class Workers {
   /// time than to come for a job, and a part is always the same thread's.
   template <class Run>
   void together(Run&& run) {
-    if (threads_ == nullptr) {
+    if (threads_ == nullptr || rests_) {
       Member alone;
       return run(alone);
     }
@@ -219,6 +222,7 @@ class Workers {
 
   struct Threads;
   int count_;
+  bool rests_ = false;
   std::unique_ptr<Threads> threads_;
 };
 

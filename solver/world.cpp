@@ -72,6 +72,11 @@ Error World<D>::set_workers(int workers) {
 }
 
 template <int D>
+void World<D>::rest_workers(bool rests) {
+  workers_->rest(rests);
+}
+
+template <int D>
 Error World<D>::set_lanes(int lanes) {
   if (lanes != 0 && lanes != 1 && lanes != 4 && lanes != 8 && lanes != 16)
     return {Code::kInvalid, "lanes"};

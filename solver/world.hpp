@@ -95,6 +95,9 @@ class World {
   /// How many threads take part in a step, this one included: 1 to 64. Changes no bit. New threads
   /// inherit the mode of this one: kInvalid "floating_point_mode" as for `create`.
   Error set_workers(int workers);
+  /// Lets steps be taken by the calling thread alone while the others of `set_workers` rest, or by
+  /// all again. Changes no bit. @pre no step runs.
+  void rest_workers(bool rests);
   /// Lets steps work in this memory, which many worlds may share, on any threads: each step takes
   /// a piece of it for its time, or makes one. So idle worlds have none. Changes no bit.
   /// @pre `memory` is of make_step_memory, and no step runs.

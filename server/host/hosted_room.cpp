@@ -21,10 +21,14 @@ constexpr std::int64_t kLastLookNs = 10'000'000;
 /// Of a message, more than a snapshot has beside its state.
 constexpr std::size_t kSnapshotBytesBeside = 1024;
 
+std::uint64_t steady_ns() {
+  return static_cast<std::uint64_t>(process_now_ns());
+}
+
 scenes::Simulation make_simulation(const RoomSettings& settings) {
   auto simulation = scenes::Simulation::create(settings.scene);
   solver::Error error = simulation.error();
-  if (simulation.ok()) error = simulation.value().set_workers(settings.workers);
+  if (simulation.ok()) error = simulation.value().set_workers_at_most(settings.workers, &steady_ns);
   if (!error.ok()) {
     throw std::invalid_argument(std::string("the scene cannot run: ") +
                                 solver::code_name(error.code) + " " + error.field);

@@ -6,6 +6,7 @@
 #include <atomic>
 #include <cstdint>
 #include <numeric>
+#include <thread>
 #include <utility>
 #include <vector>
 
@@ -32,6 +33,28 @@ TEST(Workers, RunEveryIndexOnceInRangesOfTheGrain) {
         }
       }
     }
+  }
+}
+
+// They are not ended, and whoever asks how many there are hears of the one that is left.
+TEST(Workers, RestWhileTheCallingThreadRunsAll) {
+  Workers workers(3);
+  const std::thread::id caller = std::this_thread::get_id();
+  for (const bool rests : {true, false, true, false}) {
+    workers.rest(rests);
+    EXPECT_EQ(workers.count(), rests ? 1 : 3);
+    std::atomic<int> members{0};
+    workers.together([&](Member& member) {
+      members.fetch_add(1);
+      member.meet();
+    });
+    EXPECT_EQ(members.load(), rests ? 1 : 3);
+    std::atomic<int> elsewhere{0};
+    workers.parallel_for(300, 1, [&](Range) {
+      if (std::this_thread::get_id() != caller) elsewhere.fetch_add(1);
+    });
+    if (!rests) continue;  // Then it may be that the others come too late for any.
+    EXPECT_EQ(elsewhere.load(), 0);
   }
 }
 
