@@ -99,8 +99,10 @@ solver::Error Simulation::set_workers_at_most(int workers, Clock now_ns) {
 }
 
 solver::Error Simulation::set_workers(int workers) {
-  running_->now_ns = nullptr;
-  return running_->visit([&](auto& built) { return built.world.set_workers(workers); });
+  const solver::Error error =
+      running_->visit([&](auto& built) { return built.world.set_workers(workers); });
+  if (error.ok()) running_->now_ns = nullptr;
+  return error;
 }
 
 void Simulation::use_step_memory(const StepMemories& memories) {

@@ -113,7 +113,17 @@ TEST(ThreadChoices, AreNotMadeOfOneThreadNorOfWorkersThatAreSet) {
   ASSERT_TRUE(simulation.set_workers(2).ok());
   ASSERT_TRUE(simulation.step(inputs).ok());
   EXPECT_EQ(choice_reads, reads_before);
+}
+
+TEST(ThreadChoices, StayWhereWorkersAreRefused) {
+  Simulation simulation = std::move(Simulation::create(*find("stack-10").scene).value());
+  const std::vector<SeatInput> inputs(static_cast<std::size_t>(simulation.seats()));
+  ASSERT_TRUE(simulation.set_workers_at_most(2, &choice_clock).ok());
   EXPECT_STREQ(simulation.set_workers_at_most(65, &choice_clock).field, "workers");
+  EXPECT_STREQ(simulation.set_workers(0).field, "workers");
+  const std::uint64_t reads_before = choice_reads;
+  ASSERT_TRUE(simulation.step(inputs).ok());
+  EXPECT_EQ(choice_reads, reads_before + 2);
 }
 
 }  // namespace
