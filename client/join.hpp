@@ -34,7 +34,7 @@ struct JoinOptions {
   std::shared_ptr<Witness> witness;      ///< Where empty: an Evidence, for desync reports.
   std::shared_ptr<const ClientTls> tls;  ///< Whom to trust; empty: plain TCP.
   std::uint64_t ticks = 0;               ///< Leave after so many ticks of the match; 0: stay.
-  int workers = 1;
+  int workers = 1;    ///< At most: a step takes one alone while that is faster. Changes no bit.
   InputSource input;  ///< Where empty: scenes::scripted_input of the scene.
   std::chrono::milliseconds connect{5000};
   std::chrono::milliseconds handshake{10000};  ///< From the connection to the first snapshot.

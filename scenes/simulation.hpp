@@ -70,7 +70,8 @@ class Simulation {
   /// Nanoseconds from some start, never backwards. The host's, because a world knows no clock.
   using Clock = std::uint64_t (*)();
   /// As set_workers, but a step takes one thread alone as long as that is faster (ThreadChoice), by
-  /// the host's clock, which is read before and after it; with one worker it is not.
+  /// the host's clock, which is read before and after it; with one worker it is not. Changes no
+  /// bit.
   solver::Error set_workers_at_most(int workers, Clock now_ns);
   /// For many simulations that step in turn; changes no bit. @pre no step runs.
   void use_step_memory(const StepMemories& memories);

@@ -122,7 +122,7 @@ typedef struct cycloid_client_options {
   uint32_t predict_ticks;         /* Most ticks to run ahead of the server, up to 64; 0: none. */
   uint32_t reconnect_deadline_ms; /* How long to try to come back to the seat; 0: not at all. */
   uint64_t ticks;                 /* Leave after so many; 0: stay. */
-  uint32_t workers;               /* Threads of the world; changes no bit. */
+  uint32_t workers;               /* Threads of a step at most; changes no bit. */
   uint32_t scripted;              /* 1: the seat says what the scene's script says. */
 } cycloid_client_options;
 

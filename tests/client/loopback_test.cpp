@@ -85,6 +85,39 @@ TEST(Loopback, TwoReplicasASnapshotClientAndTheReplayEndWithTheServersDigest) {
   std::filesystem::remove(log);
 }
 
+// Both sides choose from step to step how many of their threads take it (scenes::ThreadChoice); who
+// replays has one.
+TEST(Loopback, WhoTakesAnyNumberOfThreadsStaysTheSame) {
+  const std::string log =
+      (std::filesystem::temp_directory_path() / ("threads-" + std::to_string(getpid()) + ".cylog"))
+          .string();
+  server::ServeOptions serving;
+  serving.scene = *scenes::find("room-200").scene;
+  serving.ticks = 60;
+  serving.workers = 3;
+  serving.log = log;
+  serving.limits.digest_ticks = 1;
+  Served served(std::move(serving));
+  const std::uint16_t port = served.port();
+  std::vector<std::future<JoinReport>> clients;
+  for (const int workers : {1, 2}) {
+    JoinOptions options = visit(port, protocol::Mode::kLockstep);
+    options.scene = *scenes::find("room-200").scene;
+    options.workers = workers;
+    clients.push_back(std::async(std::launch::async, [options] { return join(options); }));
+  }
+  const server::ServeReport report = served.report();
+  EXPECT_EQ(report.end, server::End::kTicks) << report.reason;
+  for (auto& client : clients) {
+    const JoinReport mine = client.get();
+    EXPECT_EQ(mine.end, End::kBye) << mine.reason;
+    EXPECT_EQ(mine.progress.mismatches, 0u);
+    EXPECT_EQ(mine.final_digest, report.final_digest);
+  }
+  EXPECT_EQ(replayed_digest(log, 60), report.final_digest);
+  std::filesystem::remove(log);
+}
+
 TEST(Loopback, DisturbedReplicaIsFoundOutAndGoesOnFromASnapshot) {
   server::ServeOptions serving;
   serving.scene = Authority::scene();
