@@ -4,11 +4,14 @@
 
 #include <algorithm>
 #include <atomic>
+#include <chrono>
 #include <cstdint>
 #include <numeric>
 #include <thread>
 #include <utility>
 #include <vector>
+
+#include "solver/processors.hpp"
 
 namespace cycloid::solver {
 
@@ -56,6 +59,36 @@ TEST(Workers, RestWhileTheCallingThreadRunsAll) {
     if (!rests) continue;  // Then it may be that the others come too late for any.
     EXPECT_EQ(elsewhere.load(), 0);
   }
+}
+
+// The one of the two that is woken is often put where the one that wakes it is, and waits there.
+TEST(Workers, OfAsManyAsProcessorsRunNowhereTheCallerDoes) {
+  if (Processors().count() < 2) return;  // Then there is nowhere else.
+  Workers workers(2);
+  int looked_at = 0;
+  for (int round = 0; round < 200 || looked_at == 0; ++round) {
+    if (round % 10 == 0) std::this_thread::sleep_for(std::chrono::milliseconds(10));  // It sleeps.
+    const int before = processor_now();
+    int on[2] = {-1, -1};
+    workers.together([&](Member& member) { on[member.leads() ? 1 : 0] = processor_now(); });
+    // The caller may be moved at any time.
+    if (on[1] != before || processor_now() != before) continue;
+    ++looked_at;
+    EXPECT_NE(on[0], before) << "round " << round;
+  }
+}
+
+TEST(Processors, AreLeftAtOnce) {
+  const Processors all;
+  if (all.count() < 2) return;  // Then there is nowhere to go.
+  std::thread([&] {
+    for (int round = 0; round < 20; ++round) {
+      const int here = processor_now();
+      all.leave(here);
+      EXPECT_NE(processor_now(), here);
+      EXPECT_EQ(Processors().count(), all.count() - 1);
+    }
+  }).join();
 }
 
 // Every part is some member's, and no more than one's, whatever the range and the threads.
