@@ -166,7 +166,7 @@ static void solve_tick(const StepContext<D>& context, const WorldState<D>& state
   const Tracer<D> traced{state, scratch};
   wake_islands(context, state, scratch);
   traced(Phase::kIslands);
-  color(state, scratch);
+  color(state, workers, scratch);
   divide_into_lots(context, state, scratch);
   part_flying(context, state, scratch);
   traced(Phase::kColors);

@@ -150,6 +150,11 @@ struct CandidateRange {
   std::vector<ShapePair> fresh;  ///< New ones, sorted.
   std::vector<ShapePair> room;   ///< For sort_pairs.
   std::size_t begin = 0;         ///< Where they begin in the list of all.
+  Range places{0, 0};            ///< Of the old ones among all.
+  std::uint64_t least = 0;       ///< Key from which on, and below which, they are.
+  std::uint64_t above = 0;
+
+  bool has(const ShapePair& pair) const { return pair.key() >= least && pair.key() < above; }
 };
 
 /// Everything a step computes and throws away: nothing in here that shows outlives a tick, so
@@ -164,8 +169,12 @@ struct StepScratch : ContactList<D> {
   std::vector<std::vector<typename BoundsTree<D>::Leaf>> leaving_chunks;
   std::vector<std::vector<std::uint32_t>> slot_chunks;  ///< For whoever lists slots.
   std::vector<std::vector<ShapePair>> pair_chunks;
-  std::vector<ShapePair> fresh_candidates;  ///< Of those that look.
+  std::vector<ShapePair> fresh_candidates;  ///< Of those that look, where one thread merges them.
   std::vector<CandidateRange> candidate_ranges;
+  std::size_t used_ranges = 1;                      ///< So many of those.
+  std::vector<std::vector<ShapePair>> fresh_parts;  ///< What a chunk found for a range, by both.
+  std::size_t fresh_chunks = 0;
+  TreeRoom<D> tree_room;
   std::vector<ShapePair> pairs;  ///< Sorted by key.
   std::vector<ContactList<D>> contact_chunks;
   bool contacts_are_all = true;               ///< With those that rest.

@@ -148,6 +148,8 @@ class Member {
     if (count_ == 1) return whole;
     return {begin_of(number_, whole), leads() ? whole.end : begin_of(number_ + 1, whole)};
   }
+  /// From 0 on; the one that leads is the last.
+  int number() const { return number_; }
   /// Whether it is the one that does what is not shared: the thread that has called.
   bool leads() const { return number_ == count_ - 1; }
   /// Waits for all others to come as often; then each sees what any has written before.

@@ -60,7 +60,9 @@ std::vector<float> overlaps_of(const WorldState<D>& state, const Poses<D>& poses
       leaves.push_back({bounds_of(shape, poses(shape.body), 0.0f), s});
   }
   solver::BoundsTree<D> tree;
-  tree.build(leaves);
+  solver::TreeRoom<D> room;
+  solver::Workers alone(1);
+  tree.build(leaves, alone, room);
   const JoinedBodies joined = joined_bodies(state);
   std::vector<float> depths;
   const auto meet = [&](const Shape<D>& a, const Shape<D>& b) {

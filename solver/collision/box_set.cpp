@@ -19,8 +19,8 @@ void BoxSet<D>::clear() {
   ids_.clear();
   count_ = 0;
   leaves_.clear();
-  old_.build(leaves_);
-  young_.build(leaves_);
+  old_.clear();
+  young_.clear();
 }
 
 template <int D>
@@ -87,22 +87,21 @@ void BoxSet<D>::forget_rows(Home home) {
 }
 
 template <int D>
-void BoxSet<D>::settle() {
+void BoxSet<D>::settle(Workers& workers, TreeRoom<D>& room) {
   if (ids_.size() <= kRowsMax) return;
   list_young();
   const std::uint32_t share = count_ / kChangedShare;
   if (leaves_.size() <= (share > kChangedMax ? share : kChangedMax)) {
     forget_rows(kInYoung);
-    young_.build(leaves_);
+    young_.build(leaves_, workers, room);
     return;
   }
   leaves_.clear();
   for (std::uint32_t id = 0; id < home_.size(); ++id)
     if (home_[id] != kAbsent) leaves_.push_back({boxes_[id], id});
   forget_rows(kInOld);
-  old_.build(leaves_);
-  leaves_.clear();
-  young_.build(leaves_);
+  old_.build(leaves_, workers, room);
+  young_.clear();
 }
 
 template <int D>

@@ -20,7 +20,7 @@ class BoxSet {
   void put(std::uint32_t id, const Bounds<D>& box);
   void remove(std::uint32_t id);
   /// Makes a tree anew where too many boxes changed since the last time; call it after changes.
-  void settle();
+  void settle(Workers& workers, TreeRoom<D>& room);
 
   bool contains(std::uint32_t id) const { return id < home_.size() && home_[id] != kAbsent; }
   /// @pre contains(id).

@@ -149,6 +149,7 @@ class IslandSolver {
     bool solvable;               ///< It costs little enough.
     bool taken;                  ///< Solved at once in this tick; else the sweeps have it.
     bool weighed;                ///< They have it, but a guess that has gone wrong is weakened.
+    bool wild;                   ///< In this substep that guess is to be weighed.
     bool swept;     ///< Something acts on it that only sweeps know, so none passes it by.
     bool stands;    ///< Of contacts alone: it touches ground, and
     bool lands;     ///< it is not at rest (find_landing).

@@ -176,7 +176,8 @@ static void list_shapes(const WorldState<D>& state, ParticleScratch<D>& scratch)
     const Body<D>& body = state.bodies[shape.body];
     scratch.leaves.push_back({bounds_of(shape, Pose<D>{body.position, body.rotation}, kSkin), s});
   }
-  scratch.tree.build(scratch.leaves);
+  Workers alone(1);
+  scratch.tree.build(scratch.leaves, alone, scratch.tree_room);
 }
 
 template <int D>

@@ -19,6 +19,7 @@ struct ParticleScratch {
   std::vector<typename BoundsTree<D>::Leaf> leaves;
   std::vector<std::uint32_t> unbounded;  ///< Half-spaces, by slot.
   BoundsTree<D> tree;
+  TreeRoom<D> tree_room;
   std::vector<std::uint32_t> nearby;  ///< Shapes that one particle may meet, by slot.
 };
 

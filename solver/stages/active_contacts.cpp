@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "solver/stages/in_chunks.hpp"
 #include "solver/stages/stages.hpp"
 
 namespace cycloid::solver {
@@ -22,15 +23,20 @@ std::uint32_t OldContacts<D>::lower_bound(std::uint64_t wanted) const {
 }
 
 template <int D>
-void list_active_contacts(const WorldState<D>& state, StepScratch<D>& scratch) {
+void list_active_contacts(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   ActiveContacts& known = scratch.kept->active_contacts;
   if (known.is_known) return;
   const std::vector<std::uint8_t>& active = scratch.kept->pair_cache.active;
   known.places.clear();
-  for (std::uint32_t i = 0; i < state.contacts.size(); ++i) {
-    const Contact<D>& contact = state.contacts[i];
-    if ((active[contact.shape_a] | active[contact.shape_b]) != 0) known.places.push_back(i);
-  }
+  const auto list = [&](Range range, std::vector<std::uint32_t>& places) {
+    for (int i = range.begin; i < range.end; ++i) {
+      const Contact<D>& contact = state.contacts[static_cast<std::size_t>(i)];
+      if ((active[contact.shape_a] | active[contact.shape_b]) != 0)
+        places.push_back(static_cast<std::uint32_t>(i));
+    }
+  };
+  list_in_chunks(workers, static_cast<int>(state.contacts.size()), kLookGrain, scratch.slot_chunks,
+                 known.places, list);
   known.are_all = known.places.size() == state.contacts.size();
   if (known.are_all) known.places.clear();
   known.is_known = true;
@@ -134,8 +140,8 @@ void take_contacts(Workers& workers, StepScratch<D>& scratch, WorldState<D>& sta
 
 template class OldContacts<2>;
 template class OldContacts<3>;
-template void list_active_contacts(const WorldState<2>&, StepScratch<2>&);
-template void list_active_contacts(const WorldState<3>&, StepScratch<3>&);
+template void list_active_contacts(const WorldState<2>&, Workers&, StepScratch<2>&);
+template void list_active_contacts(const WorldState<3>&, Workers&, StepScratch<3>&);
 template std::size_t contact_count(const WorldState<2>&, const StepScratch<2>&);
 template std::size_t contact_count(const WorldState<3>&, const StepScratch<3>&);
 template void take_in_resting(const WorldState<2>&, StepScratch<2>&);

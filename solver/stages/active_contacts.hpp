@@ -43,7 +43,7 @@ class OldContacts {
 
 /// Finds out which contacts rest, where that is not known. @pre find_pairs.
 template <int D>
-void list_active_contacts(const WorldState<D>& state, StepScratch<D>& scratch);
+void list_active_contacts(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch);
 
 /// How many contacts the world has in this tick, with those that rest. @pre collide_pairs.
 template <int D>

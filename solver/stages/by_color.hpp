@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <span>
+#include <vector>
 
 #include "solver/workers.hpp"
 
@@ -91,6 +92,31 @@ void for_each_part_of_colors(std::span<const Range> colors, Range overflow, Work
   if (is_any_shared(colors, workers)) return workers.together(run_parts);
   Member alone;
   run_parts(alone);
+}
+
+/// Appends to `out` what `list(range, list_of_range)` lists for every colour and the overflow, in
+/// their order. As `list_in_chunks`, but each thread looks at what it solves: a block that another
+/// one has looked at has to be fetched back from its cache.
+template <class T, class List>
+void list_by_color(std::span<const Range> colors, Range overflow, Workers& workers,
+                   std::vector<std::vector<T>>& parts, std::vector<T>& out, List&& list) {
+  if (!is_any_shared(colors, workers)) {
+    for (const Range& color : colors) list(color, out);
+    return list(overflow, out);
+  }
+  const auto threads = static_cast<std::size_t>(workers.count());
+  const std::size_t used = (colors.size() + 1) * threads;
+  if (parts.size() < used) parts.resize(used);
+  workers.together([&](Member& member) {
+    const auto part_of = [&](std::size_t color) -> std::vector<T>& {
+      return parts[color * threads + static_cast<std::size_t>(member.number())];
+    };
+    for (std::size_t color = 0; color <= colors.size(); ++color) part_of(color).clear();
+    for (std::size_t color = 0; color < colors.size(); ++color)
+      run_part(member, colors[color], [&](Range range) { list(range, part_of(color)); });
+    if (member.leads()) list(overflow, part_of(colors.size()));
+  });
+  for (std::size_t i = 0; i < used; ++i) out.insert(out.end(), parts[i].begin(), parts[i].end());
 }
 
 }  // namespace cycloid::solver

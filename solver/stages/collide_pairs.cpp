@@ -244,7 +244,7 @@ void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Wo
                    StepScratch<D>& scratch) {
   const Collider<D> collider{state.shapes.data(), state.polyhedra, widest_lanes(context.lanes)};
   const int count = static_cast<int>(scratch.pairs.size());
-  list_active_contacts(state, scratch);
+  list_active_contacts(state, workers, scratch);
   scratch.contacts_are_all = scratch.kept->active_contacts.are_all;
   if (workers.count() > 1 && count > kChunk) {
     clear_lists<D>(scratch);

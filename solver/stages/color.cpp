@@ -56,14 +56,25 @@ static void use_no_color(std::size_t count, PairOf&& pair_of, std::vector<std::u
   }
 }
 
-/// Whether the live contacts join these pairs.
+/// Takes down what the live contacts join. @returns whether it is what stood there before.
 template <int D, class PairOf>
-static bool all_join(const std::vector<LiveContact<D>>& live, PairOf&& pair_of,
-                     const std::vector<MovingPair>& pairs) {
-  if (pairs.size() != live.size()) return false;
-  for (std::size_t i = 0; i < live.size(); ++i)
-    if (pairs[i] != pair_of(live[i].body_a, live[i].body_b)) return false;
-  return true;
+static bool take_pairs(const std::vector<LiveContact<D>>& live, PairOf&& pair_of, Workers& workers,
+                       std::vector<MovingPair>& pairs) {
+  Tally changes;
+  if (pairs.size() != live.size()) changes.add(1);
+  pairs.resize(live.size());
+  workers.parallel_for(static_cast<int>(live.size()), kLookGrain, [&](Range range) {
+    bool same = true;
+    for (int i = range.begin; i < range.end; ++i) {
+      const LiveContact<D>& contact = live[static_cast<std::size_t>(i)];
+      MovingPair& pair = pairs[static_cast<std::size_t>(i)];
+      const MovingPair now = pair_of(contact.body_a, contact.body_b);
+      same = same && pair == now;
+      pair = now;
+    }
+    if (!same) changes.add(1);
+  });
+  return changes.sum() == 0;
 }
 
 /// Gives each constraint, in order, the lowest colour that neither of its moving bodies has yet, or
@@ -130,15 +141,12 @@ static void color_joints(const WorldState<D>& state, PairOf&& pair_of, StepScrat
 
 /// What the live contacts join, and their colours. Where all join the same, these stay.
 template <int D, class PairOf>
-static void color_contacts(PairOf&& pair_of, StepScratch<D>& scratch) {
-  const std::vector<LiveContact<D>>& live = scratch.live;
+static void color_contacts(PairOf&& pair_of, Workers& workers, StepScratch<D>& scratch) {
   ContactColors& colors = scratch.kept->contact_colors;
-  if (!colors.of.empty() && all_join(live, pair_of, colors.pairs)) return;
-  colors.pairs.resize(live.size());
-  const auto pair_of_contact = [&](std::size_t i) {
-    return colors.pairs[i] = pair_of(live[i].body_a, live[i].body_b);
-  };
-  assign_colors(live.size(), pair_of_contact, scratch.used_colors, colors);
+  const bool same = take_pairs(scratch.live, pair_of, workers, colors.pairs);
+  if (same && !colors.of.empty()) return;
+  const auto pair_of_contact = [&](std::size_t i) { return colors.pairs[i]; };
+  assign_colors(colors.pairs.size(), pair_of_contact, scratch.used_colors, colors);
 }
 
 /// What the live contacts join, in one line without a colour.
@@ -159,10 +167,10 @@ static void line_up_contacts(bool reverse, PairOf&& pair_of, StepScratch<D>& scr
 ///
 /// Reads joints, live contacts and which bodies have mass; writes the colouring of the joints, for
 /// list_held whether it is as it was, and what each contact joins and its colour.
-/// Serial, because each choice depends on those before; a function of ids alone, so not of workers
-/// or history.
+/// Serial, because each choice depends on those before, but for what contacts join; a function of
+/// ids alone, so not of workers or history.
 template <int D>
-void color(const WorldState<D>& state, StepScratch<D>& scratch) {
+void color(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   const std::vector<std::uint8_t>& has_mass = scratch.kept->active_bodies.has_mass;
   const auto pair_of = [&](std::uint32_t a, std::uint32_t b) {
     return MovingPair{has_mass[a] != 0 ? a : kNone, has_mass[b] != 0 ? b : kNone};
@@ -171,12 +179,12 @@ void color(const WorldState<D>& state, StepScratch<D>& scratch) {
   scratch.used_colors.resize(state.bodies.size());
   color_joints(state, pair_of, scratch);
   if (order == Order::kColor)
-    color_contacts(pair_of, scratch);
+    color_contacts(pair_of, workers, scratch);
   else
     line_up_contacts(order == Order::kReverse, pair_of, scratch);
 }
 
-template void color(const WorldState<2>&, StepScratch<2>&);
-template void color(const WorldState<3>&, StepScratch<3>&);
+template void color(const WorldState<2>&, Workers&, StepScratch<2>&);
+template void color(const WorldState<3>&, Workers&, StepScratch<3>&);
 
 }  // namespace cycloid::solver

@@ -78,16 +78,16 @@ void find_loaded(const StepContext<D>& context, Workers& workers, StepScratch<D>
   const auto add = [&](std::uint32_t a, std::uint32_t b, std::vector<std::uint32_t>& loaded) {
     loaded.push_back(scratch.masses[a].inverse_mass > 0.0f ? a : b);
   };
-  const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
+  const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   const auto list_contacts = [&](Range range, std::vector<std::uint32_t>& loaded) {
     for (int i = range.begin; i < range.end; ++i) {
-      const ContactBlock<D, W>& block = blocks[static_cast<std::size_t>(i)];
+      const ContactBlock<D, W>& block = contacts.blocks[static_cast<std::size_t>(i)];
       for (int lane = 0; lane < kLaneCount<W> && block.loaded >> lane != 0; ++lane)
         if ((block.loaded >> lane & 1) != 0) add(block.body_a[lane], block.body_b[lane], loaded);
     }
   };
-  list_in_chunks(workers, static_cast<int>(blocks.size()), kJointGrain, scratch.slot_chunks,
-                 solver.loaded, list_contacts);
+  list_by_color(std::span<const Range>(contacts.colors), contacts.overflow, workers,
+                scratch.slot_chunks, solver.loaded, list_contacts);
   const auto list_joints = [&](Range range, std::vector<std::uint32_t>& loaded) {
     for (int i = range.begin; i < range.end; ++i) {
       const JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(i)];

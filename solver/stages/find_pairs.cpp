@@ -63,7 +63,7 @@ static Bounds<D> bounds_of_half_space(const Body<D>& body, const Shape<D>& shape
 /// Their boxes are not widened, because those of all that may meet them are; so they stay the same
 /// as long as no static body comes, goes or is moved.
 template <int D>
-static void list_statics(const WorldState<D>& state, StepScratch<D>& scratch) {
+static void list_statics(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   scratch.leaves.clear();
   scratch.kept->unbounded.clear();
   for (std::uint32_t s = 0; s < state.shapes.size(); ++s) {
@@ -79,11 +79,11 @@ static void list_statics(const WorldState<D>& state, StepScratch<D>& scratch) {
       scratch.leaves.push_back({box, s});
     }
   }
-  scratch.kept->static_tree.build(scratch.leaves);
+  scratch.kept->static_tree.build(scratch.leaves, workers, scratch.tree_room);
 }
 
 template <int D>
-static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
+static void start_anew(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.kept->pair_cache;
   const std::size_t count = state.shapes.size();
   cache.boxes.resize(count);
@@ -99,7 +99,7 @@ static void start_anew(const WorldState<D>& state, StepScratch<D>& scratch) {
   scratch.kept->active_bodies.forget_all();
   clear(scratch.kept->held_pairs);
   list_jointed_bodies(state, cache);
-  if (!cache.statics_are_known) list_statics(state, scratch);
+  if (!cache.statics_are_known) list_statics(state, workers, scratch);
   cache.statics_are_known = true;
   cache.is_known = true;
 }
@@ -163,6 +163,31 @@ static std::uint32_t look(const WorldState<D>& state, const StepScratch<D>& scra
   return seen;
 }
 
+/// Lists by chunks, as `list_in_chunks` does, and leaves what each has found parted by the ranges
+/// that are merged of it: one thread would be long about putting all of it into one list.
+template <int D, class List>
+static void list_parted(Workers& workers, int count, StepScratch<D>& scratch, List&& list) {
+  const std::size_t ranges = scratch.used_ranges;
+  scratch.fresh_chunks = static_cast<std::size_t>((count + kPairGrain - 1) / kPairGrain);
+  if (scratch.pair_chunks.size() < scratch.fresh_chunks)
+    scratch.pair_chunks.resize(scratch.fresh_chunks);
+  if (scratch.fresh_parts.size() < scratch.fresh_chunks * ranges)
+    scratch.fresh_parts.resize(scratch.fresh_chunks * ranges);
+  workers.parallel_for(count, kPairGrain, [&](Range range) {
+    const auto chunk = static_cast<std::size_t>(range.begin / kPairGrain);
+    std::vector<ShapePair>& found = scratch.pair_chunks[chunk];
+    found.clear();
+    list(range, found);
+    for (std::size_t i = 0; i < ranges; ++i) {
+      const CandidateRange& keys = scratch.candidate_ranges[i];
+      std::vector<ShapePair>& part = scratch.fresh_parts[chunk * ranges + i];
+      part.clear();
+      append_if(found, {0, static_cast<int>(found.size())}, part,
+                [&](const ShapePair& pair) { return keys.has(pair); });
+    }
+  });
+}
+
 /// The candidates of all that look. False where there are more than `tally` takes.
 template <int D>
 static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tally,
@@ -182,8 +207,12 @@ static bool look_up(const WorldState<D>& state, Workers& workers, PairTally& tal
       tally.candidates.add(cache.seen[shape]);
     }
   };
-  list_in_chunks(workers, count, kPairGrain, scratch.pair_chunks, scratch.fresh_candidates,
-                 look_all);
+  cut_candidates(workers, scratch);
+  if (scratch.used_ranges > 1)
+    list_parted(workers, count, scratch, look_all);
+  else
+    list_in_chunks(workers, count, kPairGrain, scratch.pair_chunks, scratch.fresh_candidates,
+                   look_all);
   if (tally.is_over()) return false;
   for (const std::uint32_t shape : scratch.looking) cache.seen_sum += cache.seen[shape];
   return true;
@@ -208,7 +237,7 @@ static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScra
       if (cache.active[s] != 0) scratch.looking.push_back(s);
     }
   }
-  cache.fat.settle();
+  cache.fat.settle(workers, scratch.tree_room);
   const std::uint64_t pairs_max = 8 * std::uint64_t{state.header.limits.contacts} + 65536;
   PairTally tally(pairs_max, 64 * pairs_max);
   cache.is_known = false;
@@ -219,15 +248,14 @@ static bool look_up_crowd(const WorldState<D>& state, Workers& workers, StepScra
 template <int D>
 static void list_pairs(Workers& workers, StepScratch<D>& scratch) {
   const PairCache<D>& cache = scratch.kept->pair_cache;
-  scratch.pairs.clear();
   const auto meets = [&](const ShapePair& pair) {
     return overlaps(cache.boxes[pair.shape_a], cache.boxes[pair.shape_b]);
   };
   const auto list = [&](Range range, std::vector<ShapePair>& pairs) {
     append_if(cache.candidates, range, pairs, meets);
   };
-  list_in_chunks(workers, static_cast<int>(cache.candidates.size()), kLookGrain,
-                 scratch.pair_chunks, scratch.pairs, list);
+  list_anew_in_chunks(workers, static_cast<int>(cache.candidates.size()), kLookGrain,
+                      scratch.pair_chunks, scratch.pairs, list);
 }
 
 /// Every pair of shapes whose boxes overlap and that may touch; those of bodies that can move are
@@ -246,7 +274,7 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
   scratch.pairs.clear();
   scratch.looking.clear();
   if (!cache.is_known)
-    start_anew(state, scratch);
+    start_anew(state, workers, scratch);
   else if (!cache.forgotten.empty())
     forget_changed(state, scratch);
   const bool flips = move_boxes(context, state, workers, scratch);

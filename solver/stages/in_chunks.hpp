@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <vector>
 
 #include "solver/workers.hpp"
@@ -22,6 +23,34 @@ void list_in_chunks(Workers& workers, int count, int grain, std::vector<std::vec
     list(range, chunk);
   });
   for (std::size_t i = 0; i < used; ++i) out.insert(out.end(), chunks[i].begin(), chunks[i].end());
+}
+
+/// As list_in_chunks, but what is listed takes the place of what was in `out`, and each thread puts
+/// its chunks there itself: of many records one thread alone would have to fetch half from another.
+template <class T, class List>
+void list_anew_in_chunks(Workers& workers, int count, int grain,
+                         std::vector<std::vector<T>>& chunks, std::vector<T>& out, List&& list) {
+  if (workers.count() == 1 || count <= grain) {
+    out.clear();
+    return list(Range{0, count}, out);
+  }
+  const auto used = static_cast<std::size_t>((count + grain - 1) / grain);
+  if (chunks.size() < used) chunks.resize(used);
+  const auto chunk_of = [&](Range range) { return static_cast<std::size_t>(range.begin / grain); };
+  workers.parallel_for(count, grain, [&](Range range) {
+    chunks[chunk_of(range)].clear();
+    list(range, chunks[chunk_of(range)]);
+  });
+  const auto listed_before = [&](std::size_t end) {
+    std::size_t listed = 0;
+    for (std::size_t i = 0; i < end; ++i) listed += chunks[i].size();
+    return static_cast<std::ptrdiff_t>(listed);
+  };
+  out.resize(static_cast<std::size_t>(listed_before(used)));
+  workers.parallel_for(count, grain, [&](Range range) {
+    const std::size_t chunk = chunk_of(range);
+    std::copy(chunks[chunk].begin(), chunks[chunk].end(), out.begin() + listed_before(chunk));
+  });
 }
 
 /// Appends those of from[range] that `keep` says yes to. Without a branch, because which do is

@@ -22,58 +22,68 @@ static void keep_old(const PairCache<D>& cache, Range places, std::vector<ShapeP
   });
 }
 
-/// Of the fresh candidates those whose keys are from that of the old one at `places.begin` on, and
-/// below that at `places.end`: of the first and the last range, whatever is below or above.
+/// All that was found for a range.
 template <int D>
-static void take_fresh(const PairCache<D>& cache, Range places, const std::vector<ShapePair>& fresh,
-                       std::vector<ShapePair>& taken) {
-  const auto end = static_cast<int>(cache.candidates.size());
-  const auto key_at = [&](int place) {
-    return cache.candidates[static_cast<std::size_t>(place)].key();
+static void take_fresh(std::size_t at, StepScratch<D>& scratch) {
+  std::vector<ShapePair>& fresh = scratch.candidate_ranges[at].fresh;
+  fresh.clear();
+  for (std::size_t chunk = 0; chunk < scratch.fresh_chunks; ++chunk) {
+    const auto& part = scratch.fresh_parts[chunk * scratch.used_ranges + at];
+    fresh.insert(fresh.end(), part.begin(), part.end());
+  }
+}
+
+/// Cuts the keys into ranges that have as many old candidates as any other, one for each thread.
+///
+/// Reads the candidates; writes the ranges, which cannot be seen in what is made of them.
+template <int D>
+void cut_candidates(const Workers& workers, StepScratch<D>& scratch) {
+  const std::vector<ShapePair>& candidates = scratch.kept->pair_cache.candidates;
+  std::vector<CandidateRange>& ranges = scratch.candidate_ranges;
+  scratch.used_ranges =
+      candidates.size() < kSharedMin ? 1 : static_cast<std::size_t>(workers.count());
+  if (ranges.size() < scratch.used_ranges) ranges.resize(scratch.used_ranges);
+  const auto begin_of = [&](std::size_t range) {
+    return static_cast<int>(candidates.size() * range / scratch.used_ranges);
   };
-  const std::uint64_t least = places.begin == 0 ? 0 : key_at(places.begin);
-  const std::uint64_t above = places.end == end ? ~std::uint64_t{0} : key_at(places.end);
-  taken.clear();
-  append_if(fresh, {0, static_cast<int>(fresh.size())}, taken,
-            [&](const ShapePair& pair) { return pair.key() >= least && pair.key() < above; });
+  for (std::size_t i = 0; i < scratch.used_ranges; ++i) {
+    ranges[i].places = {begin_of(i), begin_of(i + 1)};
+    ranges[i].least =
+        i == 0 ? 0 : candidates[static_cast<std::size_t>(ranges[i].places.begin)].key();
+    ranges[i].above = ~std::uint64_t{0};
+    if (i > 0) ranges[i - 1].above = ranges[i].least;
+  }
 }
 
 /// Old candidates and new ones become one list in the order of their keys, without the old ones of
-/// shapes that looked anew; after it nobody looks. Several threads each take a range of keys, with
-/// as many old ones as any other.
+/// shapes that looked anew; after it nobody looks. Each thread takes a range of keys.
 ///
 /// Reads the fresh candidates, in any order, and who looks; writes the candidates, and leaves of
 /// the fresh ones none. Keys are whole pairs, so ranges cannot be seen in the list.
+/// @pre cut_candidates.
 template <int D>
 void merge_candidates(std::uint32_t shapes, Workers& workers, StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.kept->pair_cache;
-  std::vector<CandidateRange>& ranges = scratch.candidate_ranges;
-  const int count = cache.candidates.size() < kSharedMin ? 1 : workers.count();
-  if (ranges.size() < static_cast<std::size_t>(count))
-    ranges.resize(static_cast<std::size_t>(count));
+  const auto count = static_cast<int>(scratch.used_ranges);
   const auto fresh_of = [&](CandidateRange& range) -> std::vector<ShapePair>& {
     return count == 1 ? scratch.fresh_candidates : range.fresh;
   };
-  const auto begin_of = [&](int range) {
-    return static_cast<int>(cache.candidates.size() * static_cast<std::size_t>(range) /
-                            static_cast<std::size_t>(count));
-  };
   workers.parallel_for(count, 1, [&](Range one) {
-    CandidateRange& range = ranges[static_cast<std::size_t>(one.begin)];
-    const Range places{begin_of(one.begin), begin_of(one.end)};
-    keep_old(cache, places, range.kept);
-    if (count > 1) take_fresh(cache, places, scratch.fresh_candidates, range.fresh);
+    const auto at = static_cast<std::size_t>(one.begin);
+    CandidateRange& range = scratch.candidate_ranges[at];
+    keep_old(cache, range.places, range.kept);
+    if (count > 1) take_fresh(at, scratch);
     sort_pairs(shapes, range.room, fresh_of(range));
   });
   std::size_t end = 0;
-  for (int i = 0; i < count; ++i) {
-    CandidateRange& range = ranges[static_cast<std::size_t>(i)];
+  for (std::size_t i = 0; i < scratch.used_ranges; ++i) {
+    CandidateRange& range = scratch.candidate_ranges[i];
     range.begin = end;
     end += range.kept.size() + fresh_of(range).size();
   }
   cache.candidates.resize(end);
   workers.parallel_for(count, 1, [&](Range one) {
-    CandidateRange& range = ranges[static_cast<std::size_t>(one.begin)];
+    CandidateRange& range = scratch.candidate_ranges[static_cast<std::size_t>(one.begin)];
     const std::vector<ShapePair>& fresh = fresh_of(range);
     std::merge(range.kept.begin(), range.kept.end(), fresh.begin(), fresh.end(),
                cache.candidates.begin() + static_cast<std::ptrdiff_t>(range.begin), is_below);
@@ -111,6 +121,7 @@ void lay_candidates_to_rest(PairCache<D>& cache) {
 
 template <int D>
 struct InstantiateCandidates {
+  static constexpr auto kCut = &cut_candidates<D>;
   static constexpr auto kMerge = &merge_candidates<D>;
   static constexpr auto kWake = &wake_candidates<D>;
   static constexpr auto kLay = &lay_candidates_to_rest<D>;

@@ -225,7 +225,7 @@ bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Worke
     cache.looks[s] = 1;
     scratch.looking.push_back(s);
   }
-  cache.fat.settle();
+  cache.fat.settle(workers, scratch.tree_room);
   return tally.flips.sum() > 0;
 }
 

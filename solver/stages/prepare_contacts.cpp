@@ -114,9 +114,12 @@ Lot lay_out_contacts(Workers& workers, StepScratch<D>& scratch) {
   out.members.clear();
   const auto add = [&](const Range& color, int width) {
     const auto first = static_cast<int>(out.members.size());
-    for (int begin = color.begin; begin < color.end; begin += width)
-      out.members.push_back({begin, begin + width < color.end ? begin + width : color.end});
-    return Range{first, static_cast<int>(out.members.size())};
+    const Range blocks{first, first + (color.end - color.begin + width - 1) / width};
+    out.members.resize(static_cast<std::size_t>(blocks.end));
+    for (int i = blocks.begin, begin = color.begin; i < blocks.end; ++i, begin += width)
+      out.members[static_cast<std::size_t>(i)] = {
+          begin, begin + width < color.end ? begin + width : color.end};
+    return blocks;
   };
   out.colors.clear();
   for (const Range& color : coloring.colors) out.colors.push_back(add(color, kLaneCount<W>));

@@ -5,24 +5,41 @@
 
 namespace cycloid::solver {
 
-/// In which blocks' lanes the warm start has left something, over all blocks.
+/// In how many ranges of blocks the warm start has left something.
 struct Unrest {
-  LaneBits misses = 0;
-  LaneBits stirs = 0;
+  Tally misses;
+  Tally stirs;
 };
 
 /// Nothing is settled that belongs to no island. Lanes of no contact go with the others, or a block
 /// would be one of which only some lanes are.
 template <int D, int W>
-static Unrest begin_settling(ContactBlocks<D, W>& contacts) {
-  Unrest all;
-  for (ContactBlock<D, W>& block : contacts.blocks) {
-    block.settled = block.taken != 0 ? kAllLanes<W> & ~block.left : 0;
-    if (block.taken == 0) continue;
-    all.misses |= block.misses;
-    all.stirs |= block.stirs;
+static void begin_settling(const BlockRange<D, W>& blocks, Unrest& all) {
+  LaneBits misses = 0;
+  LaneBits stirs = 0;
+  for (ContactBlock<D, W>* block = blocks.begin; block != blocks.end; ++block) {
+    block->settled = block->taken != 0 ? kAllLanes<W> & ~block->left : 0;
+    if (block->taken == 0) continue;
+    misses |= block->misses;
+    stirs |= block->stirs;
   }
-  return all;
+  if (misses != 0) all.misses.add(1);
+  if (stirs != 0) all.stirs.add(1);
+}
+
+/// Looks for what the warm start has left to do, of contacts and of joints.
+template <int D, int W>
+static void look_for_rest(const StepContext<D>& context, const Lot& lot, Workers& workers,
+                          StepScratch<D>& scratch, Unrest& all) {
+  for_all_blocks<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    ContactKernels<D, W>::look_for_rest(context, kRest, blocks);
+    begin_settling(blocks, all);
+  });
+  with_blocks(scratch.pins, [&]<int P>(PinBlocks<D, P>& pins) {
+    for_each_part_of_colors(pins.colors, {}, workers, [&](Range range) {
+      PinKernels<D, P>::look_for_rest(context, kJointBounds, pin_range<D, P>(scratch, range));
+    });
+  });
 }
 
 /// Whether the warm start has left anything to do in an island. @pre look_for_rest.
@@ -32,7 +49,7 @@ static bool is_restless(const StepContext<D>& context, const StepScratch<D>& scr
   const IslandSolver<D>& solver = scratch.islands_solved;
   const auto& blocks = std::get<ContactBlocks<D, W>>(scratch.contact_blocks).blocks;
   const bool is_strict = island.stirred || island.sways;
-  const bool looks = (is_strict ? all.stirs : all.misses) != 0;
+  const bool looks = (is_strict ? all.stirs : all.misses).sum() != 0;
   for (int g = island.groups.begin; g < island.joints.begin && looks; ++g) {
     const auto& source = solver.sources[static_cast<std::size_t>(g)];
     const auto& block = blocks[static_cast<std::size_t>(source.place)];
@@ -105,23 +122,21 @@ void solve_islands(const StepContext<D>& context, const Lot& lot, Workers& worke
                    StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
   if (!solver.acts) return;
-  auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   solver.tensions.clear();
-  ContactKernels<D, W>::look_for_rest(context, kRest,
-                                      block_range<D, W>(lot, scratch, contacts.blocks_of(lot)));
-  const Unrest all = begin_settling<D, W>(contacts);
-  with_blocks(scratch.pins, [&]<int P>(PinBlocks<D, P>& pins) {
-    const Range range{0, static_cast<int>(pins.blocks.size())};
-    PinKernels<D, P>::look_for_rest(context, kJointBounds, pin_range<D, P>(scratch, range));
-  });
+  Unrest all;
+  look_for_rest<D, W>(context, lot, workers, scratch, all);
   weigh_guesses<D, W>(context, lot, workers, scratch);
-  bool any_stirred = false;
-  for (auto& island : solver.islands) {
-    if (!island.taken) continue;
+  Tally stirred;
+  const auto stir = [&](auto& island) {
+    if (!island.taken) return;
     island.corrects = island.closes = false;
     island.stirred = is_restless<D, W>(context, scratch, all, island);
-    any_stirred = any_stirred || island.stirred;
-  }
+    if (island.stirred) stirred.add(1);
+  };
+  workers.parallel_for(static_cast<int>(solver.islands.size()), kIslandGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) stir(solver.islands[static_cast<std::size_t>(i)]);
+  });
+  const bool any_stirred = stirred.sum() > 0;
   for (auto& island : solver.islands) {
     if (!island.taken) continue;
     if (island.stirred) {
@@ -131,8 +146,10 @@ void solve_islands(const StepContext<D>& context, const Lot& lot, Workers& worke
     ++solver.work.rests;
     hand_over<D, W>(island, false, any_stirred, scratch);
   }
-  for (ContactBlock<D, W>& block : contacts.blocks)
-    if (!any_stirred || (block.settled & block.taken) == 0) block.settled = 0;
+  for_all_blocks<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    for (ContactBlock<D, W>* block = blocks.begin; block != blocks.end; ++block)
+      if (!any_stirred || (block->settled & block->taken) == 0) block->settled = 0;
+  });
 }
 
 /// Moves out of overlap what was solved at once, and leaves its velocities alone.

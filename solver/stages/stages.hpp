@@ -21,6 +21,8 @@ bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Worke
                 StepScratch<D>& scratch);
 /// @param shapes  More than any slot.
 template <int D>
+void cut_candidates(const Workers& workers, StepScratch<D>& scratch);
+template <int D>
 void merge_candidates(std::uint32_t shapes, Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void wake_candidates(StepScratch<D>& scratch);
@@ -36,7 +38,7 @@ template <int D>
 void wake_islands(const StepContext<D>& context, const WorldState<D>& state,
                   StepScratch<D>& scratch);
 template <int D>
-void color(const WorldState<D>& state, StepScratch<D>& scratch);
+void color(const WorldState<D>& state, Workers& workers, StepScratch<D>& scratch);
 /// Lists constraints colour after colour, and those of kColorsMax as overflow.
 void sort_by_color(const Colors& colors, Coloring& coloring);
 template <int D>
@@ -177,6 +179,7 @@ Statistics count_work(const WorldState<D>& state, Workers& workers, const StepSc
 /// colour by colour (by_color.hpp).
 inline constexpr int kBodyGrain = 256;
 inline constexpr int kJointGrain = 32;
+inline constexpr int kIslandGrain = 16;
 /// Of what is only looked at, copied or cleared, so many.
 inline constexpr int kLookGrain = 1024;
 

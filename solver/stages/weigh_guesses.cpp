@@ -198,16 +198,20 @@ template <int D, int W>
 void weigh_guesses(const StepContext<D>& context, const Lot& lot, Workers& workers,
                    StepScratch<D>& scratch) {
   IslandSolver<D>& solver = scratch.islands_solved;
-  bool is_found = false;
-  bool ground_moves = false;
-  for (std::size_t i = 0; i < solver.islands.size(); ++i) {
-    if (!is_wild(context, scratch, solver.islands[i])) continue;
-    if (!is_found) {
-      sort_by_island(scratch.masses.size(), solver);
-      find_guess<D, W>(lot, workers, scratch);
-      ground_moves = any_massless_moves(scratch);
+  Tally wild;
+  workers.parallel_for(static_cast<int>(solver.islands.size()), kIslandGrain, [&](Range range) {
+    for (int i = range.begin; i < range.end; ++i) {
+      auto& island = solver.islands[static_cast<std::size_t>(i)];
+      island.wild = is_wild(context, scratch, island);
+      if (island.wild) wild.add(1);
     }
-    is_found = true;
+  });
+  if (wild.sum() == 0) return;
+  sort_by_island(scratch.masses.size(), solver);
+  find_guess<D, W>(lot, workers, scratch);
+  const bool ground_moves = any_massless_moves(scratch);
+  for (std::size_t i = 0; i < solver.islands.size(); ++i) {
+    if (!solver.islands[i].wild) continue;
     const Wide share = share_of_guess<D, W>(i, ground_moves, scratch);
     if (share < 1.0) keep_share<D, W>(static_cast<float>(share), i, scratch);
   }

@@ -109,7 +109,9 @@ TEST(BoundsTree, OfManyFindsWhatComparingFinds) {
   std::vector<BoundsTree<2>::Leaf> leaves;
   for (std::uint32_t i = 0; i < 4103; ++i) leaves.push_back({drawn_box<2>(random, 0.2f), i});
   BoundsTree<2> tree;
-  tree.build(leaves);
+  TreeRoom<2> room;
+  Workers workers(1);
+  tree.build(leaves, workers, room);
   for (int i = 0; i < 100; ++i) {
     const Bounds<2> box = drawn_box<2>(random, i % 4 == 0 ? 5.0f : 0.3f);
     std::vector<int> found;
@@ -121,24 +123,30 @@ TEST(BoundsTree, OfManyFindsWhatComparingFinds) {
   }
 }
 
-// Many lie in few places, and so have one code: their ids alone put them in order.
-TEST(BoundsTree, IsTheSameInWhateverOrderItsLeavesCome) {
+// Many lie in few places, and so have one code: their ids alone put them in order. Each thread
+// sorts a part of them.
+TEST(BoundsTree, IsTheSameInWhateverOrderItsLeavesComeAndByHoweverManyThreads) {
   std::mt19937 random(8);
   Bounds<2> places[5];
   for (Bounds<2>& place : places) place = drawn_box<2>(random, 0.2f);
   std::vector<BoundsTree<2>::Leaf> leaves;
-  for (std::uint32_t i = 0; i < 900; ++i) {
+  for (std::uint32_t i = 0; i < 4000; ++i) {
     const bool in_crowd = i % 3 != 0;
     leaves.push_back({in_crowd ? places[random() % 5] : drawn_box<2>(random, 0.2f), i});
   }
   BoundsTree<2> ordered;
-  ordered.build(leaves);
-  BoundsTree<2> shuffled;
+  TreeRoom<2> room;
+  Workers workers(1);
+  ordered.build(leaves, workers, room);
   for (std::size_t i = leaves.size(); i > 1; --i) std::swap(leaves[i - 1], leaves[random() % i]);
-  shuffled.build(leaves);
-  ASSERT_EQ(ordered.size(), shuffled.size());
-  for (int rank = 0; rank < ordered.size(); ++rank)
-    ASSERT_EQ(ordered.leaf(rank).id, shuffled.leaf(rank).id) << rank;
+  for (const int threads : {1, 2, 5}) {
+    Workers several(threads);
+    BoundsTree<2> shuffled;
+    shuffled.build(leaves, several, room);
+    ASSERT_EQ(ordered.size(), shuffled.size());
+    for (int rank = 0; rank < ordered.size(); ++rank)
+      ASSERT_EQ(ordered.leaf(rank).id, shuffled.leaf(rank).id) << rank << " by " << threads;
+  }
 }
 
 }  // namespace cycloid::solver

@@ -211,7 +211,9 @@ TEST(BoundsTree, FindsWhatBruteForceFinds) {
     leaves.push_back(leaf);
   }
   BoundsTree<3> tree;
-  tree.build(leaves);
+  TreeRoom<3> room;
+  Workers workers(1);
+  tree.build(leaves, workers, room);
   for (const auto& leaf : leaves) {
     std::vector<std::uint32_t> found;
     tree.query(leaf.bounds, [&](int rank) { found.push_back(tree.leaf(rank).id); });

@@ -18,9 +18,11 @@ static Bounds<2> random_box(std::mt19937& random) {
 // Boxes come, change and go, few enough for rows alone and so many that a tree is made: what
 // overlaps is found, each once, and nothing else.
 TEST(BoxSet, FindsWhatBruteForceFindsWhateverComesAndGoes) {
+  Workers workers(2);
   for (const std::uint32_t ids : {5u, 60u, 3000u}) {
     std::mt19937 random(ids);
     BoxSet<2> set;
+    TreeRoom<2> room;
     std::vector<Bounds<2>> boxes(ids);
     std::vector<bool> present(ids, false);
     for (int round = 0; round < 60; ++round) {
@@ -35,7 +37,7 @@ TEST(BoxSet, FindsWhatBruteForceFindsWhateverComesAndGoes) {
           present[id] = true;
         }
       }
-      set.settle();
+      set.settle(workers, room);
       EXPECT_EQ(set.size(), std::count(present.begin(), present.end(), true));
       for (int i = 0; i < 20; ++i) {
         const Bounds<2> where = random_box(random);
