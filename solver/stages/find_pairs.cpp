@@ -271,7 +271,6 @@ template <int D>
 bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch) {
   PairCache<D>& cache = scratch.kept->pair_cache;
-  scratch.pairs.clear();
   scratch.looking.clear();
   if (!cache.is_known)
     start_anew(state, workers, scratch);
@@ -287,8 +286,10 @@ bool find_pairs(const StepContext<D>& context, const WorldState<D>& state, Worke
     const std::uint64_t pairs_max = 8 * std::uint64_t{state.header.limits.contacts} + 65536;
     const std::uint64_t seen_max = std::min(pairs_max, kSeenPerShapeMax * (cache.fat.size() + 16));
     PairTally tally(seen_max, seen_max);
-    if (!look_up(state, workers, tally, scratch) && !look_up_crowd(state, workers, scratch))
+    if (!look_up(state, workers, tally, scratch) && !look_up_crowd(state, workers, scratch)) {
+      scratch.pairs.clear();
       return false;
+    }
     merge_candidates(static_cast<std::uint32_t>(state.shapes.size()), workers, scratch);
   }
   if (sorts_anew) lay_candidates_to_rest(cache);
