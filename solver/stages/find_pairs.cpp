@@ -163,29 +163,31 @@ static std::uint32_t look(const WorldState<D>& state, const StepScratch<D>& scra
   return seen;
 }
 
-/// Lists by chunks, as `list_in_chunks` does, and leaves what each has found parted by the ranges
-/// that are merged of it: one thread would be long about putting all of it into one list.
+/// Parts what a chunk has found by the ranges that are merged of it.
+template <int D>
+static void part_found(const std::vector<ShapePair>& found, std::size_t chunk,
+                       StepScratch<D>& scratch) {
+  for (std::size_t i = 0; i < scratch.used_ranges; ++i) {
+    const CandidateRange& keys = scratch.candidate_ranges[i];
+    std::vector<ShapePair>& part = scratch.fresh_parts[chunk * scratch.used_ranges + i];
+    part.clear();
+    append_if(found, {0, static_cast<int>(found.size())}, part,
+              [&](const ShapePair& pair) { return keys.has(pair); });
+  }
+}
+
+/// Lists by chunks, as `list_in_chunks` does, but leaves what each has found in parts: one thread
+/// would be long about putting all of it into one list.
 template <int D, class List>
 static void list_parted(Workers& workers, int count, StepScratch<D>& scratch, List&& list) {
-  const std::size_t ranges = scratch.used_ranges;
   scratch.fresh_chunks = static_cast<std::size_t>((count + kPairGrain - 1) / kPairGrain);
-  if (scratch.pair_chunks.size() < scratch.fresh_chunks)
-    scratch.pair_chunks.resize(scratch.fresh_chunks);
-  if (scratch.fresh_parts.size() < scratch.fresh_chunks * ranges)
-    scratch.fresh_parts.resize(scratch.fresh_chunks * ranges);
-  workers.parallel_for(count, kPairGrain, [&](Range range) {
-    const auto chunk = static_cast<std::size_t>(range.begin / kPairGrain);
-    std::vector<ShapePair>& found = scratch.pair_chunks[chunk];
-    found.clear();
-    list(range, found);
-    for (std::size_t i = 0; i < ranges; ++i) {
-      const CandidateRange& keys = scratch.candidate_ranges[i];
-      std::vector<ShapePair>& part = scratch.fresh_parts[chunk * ranges + i];
-      part.clear();
-      append_if(found, {0, static_cast<int>(found.size())}, part,
-                [&](const ShapePair& pair) { return keys.has(pair); });
-    }
-  });
+  const std::size_t parts = scratch.fresh_chunks * scratch.used_ranges;
+  if (scratch.fresh_parts.size() < parts) scratch.fresh_parts.resize(parts);
+  fill_chunks(workers, count, kPairGrain, scratch.pair_chunks,
+              [&](Range range, std::vector<ShapePair>& found) {
+                list(range, found);
+                part_found(found, static_cast<std::size_t>(range.begin / kPairGrain), scratch);
+              });
 }
 
 /// The candidates of all that look. False where there are more than `tally` takes.

@@ -7,6 +7,21 @@
 
 namespace cycloid::solver {
 
+/// Calls `list(range, chunk)` for ranges of `grain` that cover [0, count), each with an empty chunk
+/// of its own. @returns how many chunks those are, in the order of the ranges.
+template <class T, class List>
+std::size_t fill_chunks(Workers& workers, int count, int grain, std::vector<std::vector<T>>& chunks,
+                        List&& list) {
+  const auto used = static_cast<std::size_t>((count + grain - 1) / grain);
+  if (chunks.size() < used) chunks.resize(used);
+  workers.parallel_for(count, grain, [&](Range range) {
+    std::vector<T>& chunk = chunks[static_cast<std::size_t>(range.begin / grain)];
+    chunk.clear();
+    list(range, chunk);
+  });
+  return used;
+}
+
 /// Appends to `out` what `list(range, list_of_range)` lists for ranges that cover [0, count), in
 /// their order. One thread lists all at once into `out`; of several each fills lists of its own,
 /// the `chunks`, which keep their memory for the next time. So threads cannot be seen, as long as
@@ -15,13 +30,7 @@ template <class T, class List>
 void list_in_chunks(Workers& workers, int count, int grain, std::vector<std::vector<T>>& chunks,
                     std::vector<T>& out, List&& list) {
   if (workers.count() == 1 || count <= grain) return list(Range{0, count}, out);
-  const auto used = static_cast<std::size_t>((count + grain - 1) / grain);
-  if (chunks.size() < used) chunks.resize(used);
-  workers.parallel_for(count, grain, [&](Range range) {
-    std::vector<T>& chunk = chunks[static_cast<std::size_t>(range.begin / grain)];
-    chunk.clear();
-    list(range, chunk);
-  });
+  const std::size_t used = fill_chunks(workers, count, grain, chunks, list);
   for (std::size_t i = 0; i < used; ++i) out.insert(out.end(), chunks[i].begin(), chunks[i].end());
 }
 
@@ -34,13 +43,7 @@ void list_anew_in_chunks(Workers& workers, int count, int grain,
     out.clear();
     return list(Range{0, count}, out);
   }
-  const auto used = static_cast<std::size_t>((count + grain - 1) / grain);
-  if (chunks.size() < used) chunks.resize(used);
-  const auto chunk_of = [&](Range range) { return static_cast<std::size_t>(range.begin / grain); };
-  workers.parallel_for(count, grain, [&](Range range) {
-    chunks[chunk_of(range)].clear();
-    list(range, chunks[chunk_of(range)]);
-  });
+  const std::size_t used = fill_chunks(workers, count, grain, chunks, list);
   const auto listed_before = [&](std::size_t end) {
     std::size_t listed = 0;
     for (std::size_t i = 0; i < end; ++i) listed += chunks[i].size();
@@ -48,7 +51,7 @@ void list_anew_in_chunks(Workers& workers, int count, int grain,
   };
   out.resize(static_cast<std::size_t>(listed_before(used)));
   workers.parallel_for(count, grain, [&](Range range) {
-    const std::size_t chunk = chunk_of(range);
+    const auto chunk = static_cast<std::size_t>(range.begin / grain);
     std::copy(chunks[chunk].begin(), chunks[chunk].end(), out.begin() + listed_before(chunk));
   });
 }

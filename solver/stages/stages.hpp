@@ -19,9 +19,9 @@ struct Statistics;
 template <int D>
 bool move_boxes(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                 StepScratch<D>& scratch);
-/// @param shapes  More than any slot.
 template <int D>
 void cut_candidates(const Workers& workers, StepScratch<D>& scratch);
+/// @param shapes  More than any slot.
 template <int D>
 void merge_candidates(std::uint32_t shapes, Workers& workers, StepScratch<D>& scratch);
 template <int D>
@@ -175,8 +175,8 @@ void rest_islands(const StepContext<D>& context, Workers& workers, StepScratch<D
 template <int D>
 Statistics count_work(const WorldState<D>& state, Workers& workers, const StepScratch<D>& scratch);
 
-/// Ranges of this many bodies or joints go to one thread at a time; of pairs, kPairGrain; blocks go
-/// colour by colour (by_color.hpp).
+/// Ranges of this many bodies, joints or islands go to one thread at a time; of pairs, kPairGrain;
+/// blocks go colour by colour (by_color.hpp).
 inline constexpr int kBodyGrain = 256;
 inline constexpr int kJointGrain = 32;
 inline constexpr int kIslandGrain = 16;

@@ -51,10 +51,13 @@ std::uint64_t replayed_digest(const std::string& file, std::uint64_t ticks) {
   return simulation.digest();
 }
 
+static std::string log_of_this_process(const std::string& name) {
+  const std::string file = name + "-" + std::to_string(getpid()) + ".cylog";
+  return (std::filesystem::temp_directory_path() / file).string();
+}
+
 TEST(Loopback, TwoReplicasASnapshotClientAndTheReplayEndWithTheServersDigest) {
-  const std::string log =
-      (std::filesystem::temp_directory_path() / ("loopback-" + std::to_string(getpid()) + ".cylog"))
-          .string();
+  const std::string log = log_of_this_process("loopback");
   server::ServeOptions serving;
   serving.scene = Authority::scene();
   serving.ticks = 100;
@@ -88,9 +91,7 @@ TEST(Loopback, TwoReplicasASnapshotClientAndTheReplayEndWithTheServersDigest) {
 // Both sides choose from step to step how many of their threads take it (scenes::ThreadChoice); who
 // replays has one.
 TEST(Loopback, WhoTakesAnyNumberOfThreadsStaysTheSame) {
-  const std::string log =
-      (std::filesystem::temp_directory_path() / ("threads-" + std::to_string(getpid()) + ".cylog"))
-          .string();
+  const std::string log = log_of_this_process("threads");
   server::ServeOptions serving;
   serving.scene = *scenes::find("room-200").scene;
   serving.ticks = 60;
