@@ -4,6 +4,7 @@
 #include <cstdlib>
 
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 TEST(Arithmetic, ProgramWithALibraryThatFlushesSaysSoAndStops) {
   // A sanitizer of the program wants to be the first library; it need not be.
   ::setenv("ASAN_OPTIONS", "verify_asan_link_order=0:detect_leaks=0", 1);
-  ::setenv("LD_PRELOAD", CYCLOID_FLUSHING_LIBRARY, 1);
+  ::setenv("LD_PRELOAD", places::flushing_library().c_str(), 1);
   const Ran ran = run_program({"run", "half-pipe", "--ticks", "10"});
   ::unsetenv("LD_PRELOAD");
   EXPECT_EQ(ran.exit, 4);

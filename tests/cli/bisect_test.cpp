@@ -3,6 +3,7 @@
 
 #include "tests/cli/logs.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -74,13 +75,13 @@ TEST_F(TwoLogs, OfOtherLengthsAreNotEqual) {
 
 TEST(Bisect, OfABuildAgainstItselfIsEqual) {
   const Ran ran =
-      run_program({"bisect", "card-house", "--against", CYCLOID_PROGRAM, "--ticks", "30"});
+      run_program({"bisect", "card-house", "--against", places::program(), "--ticks", "30"});
   EXPECT_EQ(ran.exit, 0) << ran.err;
   EXPECT_EQ(ran.out, "equal for 30 ticks\n");
 }
 
 TEST(Bisect, RunsTheOtherBuildByItsRunner) {
-  const Ran ran = run_program({"bisect", "card-house", "--against", CYCLOID_PROGRAM, "--runner",
+  const Ran ran = run_program({"bisect", "card-house", "--against", places::program(), "--runner",
                                "env CYCLOID_SOME_VARIABLE=1", "--ticks", "5"});
   EXPECT_EQ(ran.exit, 0) << ran.err;
 }
@@ -108,7 +109,7 @@ INSTANTIATE_TEST_SUITE_P(Scenes, WrongFriction,
 
 TEST_P(WrongFriction, IsNamedByPhaseContactAndTangentImpulse) {
   const std::vector<std::string> command = {
-      "bisect", GetParam(), "--against", CYCLOID_WRONG_FRICTION, "--ticks", "100"};
+      "bisect", GetParam(), "--against", places::wrong_friction_program(), "--ticks", "100"};
   const Ran ran = run_program(command);
   EXPECT_EQ(ran.exit, 1) << ran.err;
   EXPECT_THAT(ran.out, StartsWith("first tick that differs: "));
@@ -128,10 +129,10 @@ TEST_P(WrongFriction, IsNamedByPhaseContactAndTangentImpulse) {
               Each(AnyOf(StartsWith("contact "), StartsWith("body "))));
   // The tick before, both builds are the same.
   const std::string tick = std::to_string(blame["tick"].get<int>() - 1);
-  EXPECT_EQ(
-      run_program({"bisect", GetParam(), "--against", CYCLOID_WRONG_FRICTION, "--ticks", tick})
-          .exit,
-      0);
+  EXPECT_EQ(run_program({"bisect", GetParam(), "--against", places::wrong_friction_program(),
+                         "--ticks", tick})
+                .exit,
+            0);
 }
 
 /// The digest of a scene at a tick as a build makes it.
@@ -142,33 +143,37 @@ std::string digest_by(const std::string& program, const std::string& scene, int 
 }
 
 TEST_P(WrongFriction, IsNoticedByTheGoldens) {
-  const std::string goldens = read_text(CYCLOID_SOURCE_DIR "/tests/determinism/goldens.txt");
-  EXPECT_THAT(goldens, HasSubstr(digest_by(CYCLOID_PROGRAM, GetParam(), 100)));
-  EXPECT_THAT(goldens, testing::Not(HasSubstr(digest_by(CYCLOID_WRONG_FRICTION, GetParam(), 100))));
+  const std::string goldens = read_text(places::source("tests/determinism/goldens.txt"));
+  EXPECT_THAT(goldens, HasSubstr(digest_by(places::program(), GetParam(), 100)));
+  EXPECT_THAT(
+      goldens,
+      testing::Not(HasSubstr(digest_by(places::wrong_friction_program(), GetParam(), 100))));
 }
 
 TEST(WrongVelocity, IsNamedByPhaseAndBody) {
-  const Ran ran = run_program(
-      {"bisect", "wall", "--against", CYCLOID_WRONG_VELOCITY, "--ticks", "100", "--json"});
+  const Ran ran = run_program({"bisect", "wall", "--against", places::wrong_velocity_program(),
+                               "--ticks", "100", "--json"});
   EXPECT_EQ(ran.exit, 1) << ran.err;
   const nlohmann::json blame = ran.json()["blame"];
   EXPECT_EQ(blame["phase"], "velocities");
   EXPECT_THAT(blame["object"].get<std::string>(), StartsWith("body "));
   EXPECT_THAT(blame["fields"][0]["field"].get<std::string>(), StartsWith("velocity["));
-  EXPECT_THAT(read_text(CYCLOID_SOURCE_DIR "/tests/determinism/goldens.txt"),
-              testing::Not(HasSubstr(digest_by(CYCLOID_WRONG_VELOCITY, "wall", 100))));
+  EXPECT_THAT(read_text(places::source("tests/determinism/goldens.txt")),
+              testing::Not(HasSubstr(digest_by(places::wrong_velocity_program(), "wall", 100))));
 }
 
 TEST(WrongFrictionLog, OfAnotherBuildIsBisectedByRunningThatBuild) {
   const Folder folder;
   const std::string log = folder.file("wrong.cylog");
-  ASSERT_EQ(run_other(CYCLOID_WRONG_FRICTION, {"run", "wall", "--ticks", "100", "--log", log}).exit,
-            0);
+  ASSERT_EQ(
+      run_other(places::wrong_friction_program(), {"run", "wall", "--ticks", "100", "--log", log})
+          .exit,
+      0);
   EXPECT_EQ(run_program({"verify", log}).exit, 1);
-  const Ran ran = run_program({"bisect", log, "--against", CYCLOID_WRONG_FRICTION});
+  const Ran ran = run_program({"bisect", log, "--against", places::wrong_friction_program()});
   EXPECT_EQ(ran.exit, 1) << ran.err;
   EXPECT_THAT(ran.out, ContainsRegex("points\\[[0-9]\\]\\.tangent_impulse(\\[[0-9]\\])?: "));
-  EXPECT_THAT(ran.out, HasSubstr(", as by " CYCLOID_WRONG_FRICTION));
+  EXPECT_THAT(ran.out, HasSubstr(", as by " + places::wrong_friction_program()));
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -111,7 +112,7 @@ TEST(WrongFrictionPlayer, IsReportedAndTheReportIsRepeatedWithTheServersBuildInT
   const std::string address = server.wait_for("listening on ");
   ASSERT_NE(address, "");
   const Ran played = run_other(
-      CYCLOID_WRONG_FRICTION,
+      places::wrong_friction_program(),
       {"join", address, "wall", "--room", "t:1", "--seat", "spectator", "--ticks", "60", "--json"});
   EXPECT_EQ(played.exit, 1) << played.err;
   EXPECT_GT(played.json()["mismatches"], 0) << played.out;
@@ -127,7 +128,8 @@ TEST(WrongFrictionPlayer, IsReportedAndTheReportIsRepeatedWithTheServersBuildInT
   EXPECT_EQ(here.exit, 0) << here.err;
   EXPECT_EQ(here.json()["agrees_with"], "server");
   EXPECT_EQ(here.json()["digest"], here.json()["server"]);
-  const Ran there = run_other(CYCLOID_WRONG_FRICTION, {"desync", "repeat", file, "--json"});
+  const Ran there =
+      run_other(places::wrong_friction_program(), {"desync", "repeat", file, "--json"});
   EXPECT_EQ(there.exit, 1) << there.err;
   EXPECT_NE(there.json()["agrees_with"], "server");
   const Ran text = run_program({"desync", "repeat", file});

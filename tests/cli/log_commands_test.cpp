@@ -11,6 +11,7 @@
 
 #include "tests/cli/logs.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -119,8 +120,8 @@ TEST_F(LogCommand, CutsAreTracedComparedAndBisectedByTheirOwnTicks) {
   EXPECT_EQ(run_program({"trace", a, "--tick", "49"}).exit, 2);
   EXPECT_EQ(run_program({"diff", a, b}).out, "equal for 20 ticks\n");
   EXPECT_EQ(run_program({"bisect", a, b}).out, "equal for 20 ticks\n");
-  EXPECT_EQ(run_program({"bisect", a, "--against", CYCLOID_PROGRAM}).out, "equal for 20 ticks\n");
-  EXPECT_EQ(run_program({"bisect", a, "--against", CYCLOID_PROGRAM, "--ticks", "10"}).out,
+  EXPECT_EQ(run_program({"bisect", a, "--against", places::program()}).out, "equal for 20 ticks\n");
+  EXPECT_EQ(run_program({"bisect", a, "--against", places::program(), "--ticks", "10"}).out,
             "equal for 10 ticks\n");
   EXPECT_EQ(run_program({"bisect", a, log_}).exit, 2);
   EXPECT_THAT(run_program({"diff", a, log_}).out, HasSubstr("begins after tick 50"));
@@ -183,7 +184,7 @@ TEST_F(LogCommand, SalvageKeepsThePrefixAndSaysWhatIsLost) {
     const Ran taken = run_program(command);
     EXPECT_EQ(taken.exit, 0) << command[0] << taken.out << taken.err;
   }
-  const Ran against = run_program({"bisect", log_, "--against", CYCLOID_PROGRAM, "--salvage"});
+  const Ran against = run_program({"bisect", log_, "--against", places::program(), "--salvage"});
   EXPECT_EQ(against.out, "equal for 60 ticks\n") << against.err;
   const Ran verify = run_program({"verify", log_, "--salvage"});
   EXPECT_THAT(verify.out, HasSubstr("salvaged after 60 good ticks: a damaged record at byte "));

@@ -5,6 +5,7 @@
 
 #include "protocol/log_format.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -12,7 +13,7 @@ namespace {
 /// Logs of released versions: each verifies here as long as the version that wrote it is one of
 /// the bit-compatible ones, and none lies here that is not.
 TEST(LogCorpus, EveryLogStillVerifies) {
-  const std::string folder = CYCLOID_SOURCE_DIR "/tests/determinism/logs";
+  const std::string folder = places::source("tests/determinism/logs");
   const Ran ran = run_program({"verify", folder, "--json"});
   ASSERT_EQ(ran.exit, 0) << ran.out << ran.err;
   const nlohmann::json verified = ran.json();

@@ -5,6 +5,8 @@
 #include <string>
 #include <vector>
 
+#include "tests/places.hpp"
+
 namespace cycloid::cli {
 
 struct Ran {
@@ -38,7 +40,7 @@ class Folder {
 class Background {
  public:
   explicit Background(const std::vector<std::string>& arguments,
-                      const std::string& program = CYCLOID_PROGRAM);
+                      const std::string& program = places::program());
   ~Background();
   Background(const Background&) = delete;
   Background& operator=(const Background&) = delete;

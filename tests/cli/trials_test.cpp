@@ -3,14 +3,15 @@
 #include <gtest/gtest.h>
 
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
 
 using testing::HasSubstr;
 
-const std::string kOutcomes = CYCLOID_SOURCE_DIR "/bench/trials/expected.txt";
-const std::string kShares = CYCLOID_SOURCE_DIR "/bench/trials/shares.txt";
+const std::string kOutcomes = places::source("bench/trials/expected.txt");
+const std::string kShares = places::source("bench/trials/shares.txt");
 
 /// Five runs of a cheap trial under the default method, and more words.
 Ran perturb(const std::vector<std::string>& more) {
@@ -70,7 +71,7 @@ TEST(PerturbedTrials, WriteSharesAndCompareWithThem) {
 TEST(PerturbedTrials, RefuseWhatTheyCannotDo) {
   struct Case {
     std::vector<std::string> arguments;
-    const char* words;
+    std::string words;
   };
   const Case cases[] = {
       {{"--perturb", "0"}, "--perturb"},
@@ -87,7 +88,7 @@ TEST(PerturbedTrials, RefuseWhatTheyCannotDo) {
       {{"--perturb", "5", "no-such-trial"}, "there is no trial 'no-such-trial'"},
       {{"--perturb", "5", "--check", kOutcomes}, "is a table of single outcomes"},
       {{"--perturb", "5", "--write", kOutcomes}, "is a table of single outcomes"},
-      {{"--check", kShares}, "--check: " CYCLOID_SOURCE_DIR "/bench/trials/shares.txt: is a table"},
+      {{"--check", kShares}, "--check: " + kShares + ": is a table"},
       {{"--write", kShares}, "is a table of shares; say --perturb 20"},
       {{"--perturb", "5", "--check", kShares}, "says --perturb 20 --seed 1"},
       {{"--perturb", "20", "--seed", "2", "--check", kShares}, "says --perturb 20 --seed 1"},

@@ -4,6 +4,7 @@
 #include "scenes/accuracy.hpp"
 #include "scenes/catalogue.hpp"
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -11,7 +12,7 @@ namespace {
 using testing::HasSubstr;
 using testing::Not;
 
-const std::string kColumn = CYCLOID_SOURCE_DIR "/tests/tuning/column.json";
+const std::string kColumn = places::source("tests/tuning/column.json");
 
 /// A copy of the scene that asks for half a millimetre.
 class TuneCommand : public testing::Test {

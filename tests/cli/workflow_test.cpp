@@ -8,6 +8,7 @@
 
 #include "tests/cli/program.hpp"
 #include "tests/cli/xml.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -15,7 +16,7 @@ namespace {
 using testing::HasSubstr;
 
 std::string read_source(const std::string& path) {
-  return read_text(std::string(CYCLOID_SOURCE_DIR "/") + path);
+  return read_text(places::source(path));
 }
 
 /// What follows `run: ` where that is a call of the program.
@@ -51,7 +52,7 @@ class Workflow : public testing::Test {
     write_text(folder_.file("scenes/arena.json"), scene.dump());
   }
   Ran shell(const std::string& script) const {
-    const std::string bin = std::filesystem::path(CYCLOID_PROGRAM).parent_path().string();
+    const std::string bin = std::filesystem::path(places::program()).parent_path().string();
     write_text(folder_.file("script.sh"), "set -e\nPATH=\"" + bin + ":$PATH\"\ncd \"" +
                                               folder_.path() + "\"\n" + script + "\n");
     const int status = std::system(("sh \"" + folder_.file("script.sh") + "\" >\"" +

@@ -13,6 +13,7 @@
 #include "client/c/cycloid.h"
 #include "scenes/catalogue.hpp"
 #include "tests/client/served.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::client {
 namespace {
@@ -37,7 +38,7 @@ Output run_shell(const std::string& command) {
 
 /// The interface as it was promised, one line for each call and each field.
 std::set<std::string> promised() {
-  std::ifstream stream(CYCLOID_SOURCE_DIR "/tests/client/c_abi.txt");
+  std::ifstream stream(places::source("tests/client/c_abi.txt"));
   std::set<std::string> lines;
   for (std::string line; std::getline(stream, line);)
     if (!line.empty()) lines.insert(line);
@@ -59,7 +60,7 @@ std::string last_error() {
 
 TEST(CAbi, ExportsThePromisedCallsAndNothingElse) {
   const Output nm =
-      run_shell(std::string(CYCLOID_NM) + " -D --defined-only -P '" + CYCLOID_C_LIBRARY + "'");
+      run_shell(places::name_lister() + " -D --defined-only -P '" + places::c_library() + "'");
   ASSERT_EQ(nm.exit, 0) << nm.text;
   std::set<std::string> calls;
   std::istringstream lines(nm.text);
@@ -340,7 +341,7 @@ TEST_P(CExample, PlaysAMatchAndEndsWithTheServersDigest) {
   serving.ticks = 150;
   serving.limits.digest_ticks = 10;
   Served served(std::move(serving));
-  const std::string command = std::string("'") + CYCLOID_C_EXAMPLE + "' 127.0.0.1 " +
+  const std::string command = "'" + places::c_example() + "' 127.0.0.1 " +
                               std::to_string(served.port()) + " half-pipe " +
                               std::to_string(GetParam());
   const Output played = run_shell(command);

@@ -10,6 +10,7 @@
 #include "scenes/golden.hpp"
 #include "scenes/simulation.hpp"
 #include "solver/version.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::scenes {
 
@@ -47,7 +48,7 @@ std::vector<std::string> names() {
 /// kSolverVersion and says why.
 const GoldenFile& goldens() {
   static const GoldenFile kGoldens = [] {
-    std::ifstream stream(CYCLOID_SOURCE_DIR "/tests/determinism/goldens.txt", std::ios::binary);
+    std::ifstream stream(places::source("tests/determinism/goldens.txt"), std::ios::binary);
     std::ostringstream text;
     text << stream.rdbuf();
     ParsedGolden parsed = parse_golden(text.str());

@@ -9,6 +9,7 @@
 
 #include "bench/trials/perturb.hpp"
 #include "tests/experiments/begin_trial.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::trials {
 
@@ -95,7 +96,7 @@ TEST(ShareTables, ShowInBoldWhatStandsInAllRuns) {
 /// What the solver's source tree says of perturbed trials.
 static const ShareTable& kept() {
   static const ShareTable kKept = [] {
-    std::ifstream stream(CYCLOID_SOURCE_DIR "/bench/trials/shares.txt");
+    std::ifstream stream(places::source("bench/trials/shares.txt"));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     ShareTable table;
     std::string mistake;
@@ -116,7 +117,7 @@ TEST(KeptShares, AreOfEveryTrialUnderThreeMethods) {
 }
 
 TEST(KeptShares, StandInTheDocument) {
-  std::ifstream stream(CYCLOID_SOURCE_DIR "/docs/stability.md");
+  std::ifstream stream(places::source("docs/stability.md"));
   const std::string page{std::istreambuf_iterator<char>(stream), {}};
   EXPECT_THAT(page, testing::HasSubstr("-->\n" + shares_markdown(kept()) + "<!-- end of shares"));
 }

@@ -9,6 +9,7 @@
 #include "bench/trials/judges.hpp"
 #include "bench/trials/methods.hpp"
 #include "scenes/catalogue.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::scenes {
 
@@ -23,7 +24,7 @@ namespace cycloid::trials {
 
 static const ExpectedTable& expected() {
   static const ExpectedTable kTable = [] {
-    std::ifstream stream(CYCLOID_SOURCE_DIR "/bench/trials/expected.txt");
+    std::ifstream stream(places::source("bench/trials/expected.txt"));
     const std::string text{std::istreambuf_iterator<char>(stream), {}};
     ExpectedTable table;
     std::string mistake;

@@ -7,11 +7,12 @@
 #include <sstream>
 #include <string>
 
+#include "tests/places.hpp"
+
 namespace cycloid::protocol {
 namespace {
 
-const std::filesystem::path kSchemas =
-    std::filesystem::path(CYCLOID_SOURCE_DIR) / "protocol/schema";
+const std::filesystem::path kSchemas = places::source("protocol/schema");
 const char* const kFiles[] = {"common.fbs", "client_message.fbs", "server_message.fbs"};
 
 std::string text_of(const std::filesystem::path& file) {

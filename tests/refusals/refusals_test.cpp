@@ -10,6 +10,7 @@
 #include "scenes/simulation.hpp"
 #include "solver/floating_point_mode.hpp"
 #include "solver/world.hpp"
+#include "tests/places.hpp"
 #include "tests/refusals/reordering_user.hpp"
 
 namespace cycloid::solver {
@@ -30,7 +31,7 @@ class ModeKept {
 
 /// Loads the library that flushes, whose code does so to the thread that loads it.
 void load_flushing_library() {
-  void* library = dlopen(CYCLOID_FLUSHING_LIBRARY, RTLD_NOW);
+  void* library = dlopen(places::flushing_library().c_str(), RTLD_NOW);
   ASSERT_NE(library, nullptr) << dlerror();
   ASSERT_FALSE(floating_point_mode_is_ieee()) << "this library does not flush";
   dlclose(library);

@@ -9,6 +9,7 @@
 
 #include "scenes/accuracy.hpp"
 #include "scenes/catalogue.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::scenes {
 
@@ -67,7 +68,7 @@ TEST(Json, ToBinaryToJsonIsTheIdentityForEveryScene) {
 
 TEST(Catalogue, FilesAreTheExportsOfTheirRules) {
   for (Scene scene : generated_defaults()) {
-    std::ifstream file(std::string(CYCLOID_SOURCE_DIR "/scenes/catalogue/") + scene.name + ".json");
+    std::ifstream file(places::source("scenes/catalogue/" + scene.name + ".json"));
     std::stringstream text;
     text << file.rdbuf();
     // No rule knows the method of a scene that asks for an accuracy: `cycloid tune` has stored it.

@@ -8,6 +8,7 @@
 #include <map>
 #include <regex>
 
+#include "tests/places.hpp"
 #include "tests/server/config_fixture.hpp"
 
 namespace cycloid::server {
@@ -206,7 +207,7 @@ TEST(Config, TokensNeedKeysAndTlsItsFiles) {
 }
 
 TEST(Config, TheDocumentListsEveryKey) {
-  std::ifstream stream(std::string(CYCLOID_SOURCE_DIR) + "/docs/server.md");
+  std::ifstream stream(places::source("docs/server.md"));
   std::string line;
   std::map<std::string, std::string> listed;
   const std::regex kRow(R"(^\| `([a-zA-Z_.]+)` \| ([^|]*) \| ([^|]*) \| ([^|]*) \|.*)");

@@ -4,6 +4,7 @@
 #include <regex>
 #include <set>
 
+#include "tests/places.hpp"
 #include "tests/tidy/sources.hpp"
 
 namespace cycloid::tidy {
@@ -38,7 +39,7 @@ static const std::regex kStageRow(R"(^\| `(\w+)` \|)");
 
 TEST(Readme, ListsTheFoldersOfTheTree) {
   Names folders;
-  for (const auto& entry : std::filesystem::directory_iterator(CYCLOID_SOURCE_DIR)) {
+  for (const auto& entry : std::filesystem::directory_iterator(places::source(""))) {
     const std::string name = entry.path().filename();
     if (entry.is_directory() && is_ours(name) && name[0] != '.') folders.insert(name);
   }
@@ -137,7 +138,7 @@ static Complaints against_claims(const Source& page, const Names& tests) {
 static Complaints against_links(const Source& page) {
   static const std::regex kLink(R"(\]\(([^)#:]+)(#[^)]*)?\))");
   const std::filesystem::path folder =
-      (std::filesystem::path(CYCLOID_SOURCE_DIR) / page.path).parent_path();
+      std::filesystem::path(places::source(page.path)).parent_path();
   Complaints complaints;
   for (const std::string& link : names_in(page, kLink))
     if (!std::filesystem::exists(folder / link))

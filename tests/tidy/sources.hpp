@@ -9,6 +9,8 @@
 #include <string_view>
 #include <vector>
 
+#include "tests/places.hpp"
+
 namespace cycloid::tidy {
 
 /// A text file of this repository, or one made up to see a rule fail.
@@ -76,7 +78,7 @@ inline Source make_source(const std::string& path, const std::string& text) {
 }
 
 inline Source read_source(const std::string& path) {
-  std::ifstream stream(std::string(CYCLOID_SOURCE_DIR "/") + path);
+  std::ifstream stream(places::source(path));
   std::ostringstream text;
   text << stream.rdbuf();
   return make_source(path, text.str());
@@ -92,7 +94,7 @@ inline bool is_ours(const std::string& top) {
 inline std::vector<std::string> files_with(const std::vector<std::string>& endings) {
   namespace fs = std::filesystem;
   std::vector<std::string> files;
-  const fs::path root = CYCLOID_SOURCE_DIR;
+  const fs::path root = places::source("");
   for (auto entry = fs::recursive_directory_iterator(root); entry != fs::end(entry); ++entry) {
     const std::string name = entry->path().filename();
     if (entry->is_directory() && ((entry.depth() == 0 && !is_ours(name)) || name == "__pycache__"))

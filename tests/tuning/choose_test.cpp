@@ -9,13 +9,14 @@
 #include "bench/tuning/asked_error.hpp"
 #include "scenes/accuracy.hpp"
 #include "scenes/catalogue.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::tuning {
 namespace {
 
 scenes::Scene column() {
   const scenes::Loaded loaded =
-      scenes::load_file(CYCLOID_SOURCE_DIR "/tests/tuning/column.json", scenes::Untuned::kAllowed);
+      scenes::load_file(places::source("tests/tuning/column.json"), scenes::Untuned::kAllowed);
   EXPECT_TRUE(loaded.scene);
   return loaded.scene.value_or(scenes::Scene{});
 }
