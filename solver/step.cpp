@@ -130,6 +130,7 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   prepare_islands<D, W>(context, workers, scratch);
   const StepContext<D> paced = choose_substeps<D, W>(context, state, scratch);
   scratch.substeps = paced.tuning.substeps;
+  whole.bodies = in_substeps(scratch);
   prepare_pins(paced, state, workers, scratch);
   traced(Phase::kPrepare);
   if (divided)
@@ -137,7 +138,7 @@ static void solve_contacts(const StepContext<D>& context, const WorldState<D>& s
   else
     solve_lot<D, W>(context.h, paced, state, traced, whole, workers, scratch);
   traced(Phase::kStore);
-  fly_bodies(paced, state, workers, scratch);
+  fly_bodies(context, state, workers, scratch);
   stop_fast_bodies(context, state, workers, scratch);
   traced(Phase::kStop);
 }

@@ -1,4 +1,6 @@
 #include <algorithm>
+#include <span>
+#include <utility>
 
 #include "solver/stages/stages.hpp"
 
@@ -13,23 +15,46 @@ static constexpr float kTurn_rad = 0.025f;
 /// much again.
 static constexpr float kClosed = 0.75f;
 
-/// Whether islands that are solved at once have all that moves, no sweep acts on any, and no joint
-/// of theirs has far to close.
+/// Whether islands that are solved at once have all that anything touches or holds, no sweep acts
+/// on any, and no joint of theirs has far to close.
 template <int D>
 static bool islands_have_all(const StepScratch<D>& scratch) {
   const IslandSolver<D>& solver = scratch.islands_solved;
   if (!solver.acts || !solver.only_thin) return false;
-  int taken = 0;
-  for (const auto& island : solver.islands) {
+  for (const auto& island : solver.islands)
     if (!island.taken || island.swept) return false;
-    taken += island.bodies;
-  }
   for (const JointRow<D>& row : scratch.joint_rows)
     if (!row.in_island || row.parted) return false;
-  int awake = 0;
-  for (const std::uint32_t slot : scratch.awake_bodies)
-    if (scratch.masses[slot].inverse_mass > 0.0f) ++awake;
-  return awake == taken;
+  return true;
+}
+
+/// Puts what no island has behind all others: `fly_bodies` moves it in the substeps asked for,
+/// which costs next to nothing, so it flies the same way whatever becomes of the others. What has
+/// no mass stays, for an island may stand on it. @pre islands_have_all.
+template <int D>
+static void part_from_islands(StepScratch<D>& scratch) {
+  const auto flies = [&](std::uint32_t slot) {
+    return scratch.masses[slot].inverse_mass > 0.0f && scratch.islands_solved.island_of[slot] < 0;
+  };
+  std::vector<std::uint32_t>& moving = scratch.moving_bodies;
+  std::size_t end = moving.size();
+  for (std::size_t place = 0; place < end;) {
+    if (!flies(moving[place])) {
+      ++place;
+      continue;
+    }
+    std::swap(moving[place], moving[--end]);
+    std::swap(scratch.accelerations[place], scratch.accelerations[end]);
+  }
+  scratch.flying = static_cast<int>(moving.size() - end);
+}
+
+/// Whether what flies may come down on joints that are not closed yet.
+template <int D>
+static bool may_land_on_open_joints(const StepScratch<D>& scratch) {
+  if (scratch.flying == 0) return false;
+  const auto is_open = [](const JointRow<D>& row) { return row.open; };
+  return std::any_of(scratch.joint_rows.begin(), scratch.joint_rows.end(), is_open);
 }
 
 /// Whether each island that is solved has joints. Without any it leans on its contacts alone, from
@@ -41,20 +66,23 @@ static bool joints_in_all(const IslandSolver<D>& solver) {
   return true;
 }
 
-/// What the fastest turns in `time_s`, rad.
+/// What the fastest turns in `time_s`, rad, of all but what flies.
 template <int D>
 static float most_turn(float time_s, const StepScratch<D>& scratch) {
   float fastest = 0.0f;
-  for (const std::uint32_t slot : scratch.awake_bodies)
+  const auto count = static_cast<std::size_t>(in_substeps(scratch).end);
+  for (const std::uint32_t slot : std::span(scratch.moving_bodies).first(count))
     fastest = std::max(fastest, length(scratch.motions[slot].spin));
   return time_s * fastest;
 }
 
 /// By what the number of substeps is divided: 1, 2 or 4.
 template <int D>
-static std::uint32_t fewer_by(const StepContext<D>& context, const StepScratch<D>& scratch) {
+static std::uint32_t fewer_by(const StepContext<D>& context, StepScratch<D>& scratch) {
   const std::uint32_t substeps = context.tuning.substeps;
   if (substeps < 4 || substeps % 2 != 0 || !islands_have_all(scratch)) return 1;
+  part_from_islands(scratch);
+  if (may_land_on_open_joints(scratch)) return 1;
   const float turn_rad = most_turn(context.h, scratch);
   const bool quarter = substeps % 4 == 0 && joints_in_all(scratch.islands_solved);
   if (quarter && 4.0f * turn_rad <= kTurn_rad) return 4;
@@ -87,11 +115,12 @@ void rescale_impulses(float scale, StepScratch<D>& scratch) {
 }
 
 /// Substeps are there for the sweeps, whose errors shrink with their square. What is solved at once
-/// needs them only to follow how it turns. So where it is all that moves, and nothing turns fast,
-/// half as many do, and where joints hold it a quarter.
+/// needs them only to follow how it turns. So where it is all that moves but for what flies, and
+/// nothing of it turns fast, half as many do, and where joints hold it a quarter.
 ///
-/// Reads which islands are taken, spins and damping; writes the damping of a substep and the
-/// impulses that it begins with. @returns the context of the substeps. Serial.
+/// Reads which islands are taken, spins and damping; writes who moves, who of them flies, their
+/// accelerations in that order, the damping of a substep and the impulses that it begins with.
+/// @returns the context of the substeps. Serial.
 template <int D, int W>
 StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D>& state,
                                StepScratch<D>& scratch) {

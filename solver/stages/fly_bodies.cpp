@@ -66,9 +66,9 @@ static void fly_range(const StepContext<3>& context, const WorldState<3>& state,
   }
 }
 
-/// The substeps of those that nothing touches or holds, one body after the other:
-/// integrate_velocities, then integrate_positions, as often as there are substeps. To the bit what
-/// these make of all bodies substep after substep.
+/// The substeps of those that nothing touches or holds, one body after the other, as many as were
+/// asked for: integrate_velocities, then integrate_positions, as often as there are substeps. To
+/// the bit what these make of all bodies substep after substep.
 ///
 /// Reads accelerations; writes the motions of who flies. Each body its own.
 template <int D>

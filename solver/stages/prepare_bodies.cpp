@@ -113,7 +113,8 @@ void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, W
 template <int D>
 void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
                    StepScratch<D>& scratch) {
-  for (std::size_t place = 0; place < scratch.moving_bodies.size(); ++place) {
+  const auto end = static_cast<std::size_t>(in_substeps(scratch).end);
+  for (std::size_t place = 0; place < end; ++place) {
     const Body<D>& body = state.bodies[scratch.moving_bodies[place]];
     if (body.inverse_mass > 0.0f) dampen(context.h, body, scratch.accelerations[place]);
   }

@@ -127,9 +127,7 @@ Lot lay_out_contacts(Workers& workers, StepScratch<D>& scratch) {
   const std::size_t room = room_for(workers.count(), scratch.lots, out);
   out.blocks.resize(room);
   out.extras.resize(room);
-  return {{0, static_cast<int>(scratch.moving_bodies.size()) - scratch.flying},
-          {0, static_cast<int>(out.colors.size())},
-          out.overflow};
+  return {in_substeps(scratch), {0, static_cast<int>(out.colors.size())}, out.overflow};
 }
 
 template <int D, int W>

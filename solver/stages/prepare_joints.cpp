@@ -71,6 +71,10 @@ static void set_cone(float share, const Joint<3>& joint, JointRow<3>& row) {
 /// its length then never quite comes together. From 0.02 to 0.1 is all the same.
 static constexpr float kParted = 0.08f;
 
+/// The same for it to be left to fewer substeps while something flies that may come down on it, m:
+/// a taut bridge that is still closing when its load comes sags by 13 mm instead of 1.
+static constexpr float kOpen = 0.0005f;
+
 /// How far apart the points are that a user's joint holds together, by its first rows, m; 0 where
 /// those are fewer than a point has. @pre its function is registered.
 template <int D>
@@ -103,7 +107,7 @@ static void look_at_anchors(const StepContext<D>& context, const WorldState<D>& 
   constexpr float kSame = 1.0e-4f;  // m
   const Joint<D>& joint = state.joints[row.joint];
   row.holds_point = holds_anchors(joint.kind);
-  row.parted = false;
+  row.parted = row.open = false;
   const bool is_users = joint.kind == JointKind::kUser && row.rows_function != nullptr;
   if (!row.holds_point && !is_users) return;
   float apart =
@@ -115,6 +119,7 @@ static void look_at_anchors(const StepContext<D>& context, const WorldState<D>& 
     apart = by_rows;
   }
   row.parted = apart > kParted;
+  row.open = apart > kOpen;
 }
 
 /// @param row  May be of another joint and tick: everything is written but what evaluate_rows

@@ -50,7 +50,7 @@ void part_flying(const StepContext<D>& context, const WorldState<D>& state,
 template <int D>
 void prepare_bodies(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,
                     StepScratch<D>& scratch);
-/// The part of prepare_bodies that depends on the length of a substep.
+/// The part of prepare_bodies that depends on the length of a substep, of all but who flies.
 template <int D>
 void dampen_bodies(const StepContext<D>& context, const WorldState<D>& state,
                    StepScratch<D>& scratch);
@@ -282,6 +282,12 @@ void for_all_blocks(const Lot& lot, Workers& workers, StepScratch<D>& scratch, R
   const auto& contacts = std::get<ContactBlocks<D, W>>(scratch.contact_blocks);
   for_each_part_of_colors(colors_of(lot, contacts), lot.overflow, workers,
                           [&](Range range) { run(block_range<D, W>(lot, scratch, range)); });
+}
+
+/// The places in moving_bodies of who takes part in substeps: all but who flies.
+template <int D>
+Range in_substeps(const StepScratch<D>& scratch) {
+  return {0, static_cast<int>(scratch.moving_bodies.size()) - scratch.flying};
 }
 
 /// Runs `run(range)` for ranges of the places of a lot's bodies in moving_bodies.

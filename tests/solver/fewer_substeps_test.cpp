@@ -1,3 +1,5 @@
+#include <cstring>
+
 #include "tests/solver/joint_scene.hpp"
 
 namespace cycloid::solver {
@@ -103,6 +105,12 @@ struct Pendulum : Scene<D> {
     about[Dim<D>::kSpin - 1] = spin;
     ASSERT_TRUE(this->world.set_velocity(heavy, Vec<D>::zero(), about).ok());
   }
+  /// By as much, m, from where it hangs.
+  void lower_heavy(float apart) {
+    const BodyView<D> now = view(this->world, heavy);
+    const Vec<D> lower = now.position - at<D>(0.0f, apart);
+    ASSERT_TRUE(this->world.set_pose(heavy, lower, now.rotation).ok());
+  }
   std::uint32_t substeps() const { return this->world.statistics().substeps; }
 };
 
@@ -165,23 +173,85 @@ TEST(FewerSubsteps, NotWhereAJointHasParted) {
        std::vector<std::pair<float, std::uint32_t>>{{0.07f, 1u}, {0.09f, 4u}}) {
     Pendulum<2> pendulum({});
     step(pendulum.world, 30);
-    const BodyView<2> heavy = view(pendulum.world, pendulum.heavy);
-    const Vec<2> lower = heavy.position - at<2>(0.0f, apart);
-    ASSERT_TRUE(pendulum.world.set_pose(pendulum.heavy, lower, heavy.rotation).ok());
+    pendulum.lower_heavy(apart);
     step(pendulum.world, 1);
     EXPECT_EQ(pendulum.substeps(), substeps) << apart;
   }
 }
 
-TEST(FewerSubsteps, NotWhileAnythingElseMoves) {
+TEST(FewerSubsteps, NotWhileAnythingElseIsTouched) {
   Column<2> column = make_column<2>({});
   step(column.world, 30);
-  const BodyId falls = add_at<2>(column.world, {{50.0f, 40.0f}}, ball<2>(0.5f));
+  const BodyId stands = add_at<2>(column.world, {{50.0f, 0.5f}}, ball<2>(0.5f));
   step(column.world, 1);
   EXPECT_EQ(column.world.statistics().substeps, 4u);
-  ASSERT_TRUE(column.world.destroy_body(falls).ok());
+  ASSERT_TRUE(column.world.destroy_body(stands).ok());
   step(column.world, 1);
   EXPECT_EQ(column.world.statistics().substeps, 2u);
+}
+
+/// A damped rod that turns by 3 rad/s and more, high above all else.
+template <int D>
+static BodyId add_flying(World<D>& world) {
+  BodyDef<D> body;
+  body.mass = 1.0f;
+  body.position = at<D>(50.0f, 400.0f);
+  body.linear_damping = 0.5f;
+  body.angular_damping = 0.25f;
+  for (float& spin : body.spin.v) spin = 3.0f;
+  ShapeDef<D> rod;
+  rod.kind = ShapeKind::kCapsule;
+  rod.points = {at<D>(-0.4f, -0.2f), at<D>(0.4f, 0.2f)};
+  rod.radius = 0.1f;
+  return add(world, body, rod);
+}
+
+template <int D>
+static bool moves_as(const BodyView<D>& a, const BodyView<D>& b) {
+  return std::memcmp(&a.position, &b.position, sizeof a.position) == 0 &&
+         std::memcmp(&a.rotation, &b.rotation, sizeof a.rotation) == 0 &&
+         std::memcmp(&a.velocity, &b.velocity, sizeof a.velocity) == 0 &&
+         std::memcmp(&a.spin, &b.spin, sizeof a.spin) == 0;
+}
+
+// What nothing touches or holds is moved in all substeps, whatever becomes of the others, and they
+// take as few as without it.
+template <int D>
+static void expect_flight_apart() {
+  Column<D> column = make_column<D>({});
+  step(column.world, 30);
+  World<D> empty = make_world<D>(with_gravity<D>({}));
+  const BodyId flies = add_flying(column.world);
+  const BodyId alone = add_flying(empty);
+  for (int tick = 0; tick < 120; ++tick) {
+    step(column.world, 1);
+    step(empty, 1);
+    ASSERT_EQ(column.world.statistics().substeps, 2u);
+    ASSERT_EQ(empty.statistics().substeps, 4u);
+    ASSERT_TRUE(moves_as<D>(view(column.world, flies), view(empty, alone))) << tick;
+  }
+}
+TEST(FewerSubsteps, WhatFliesTakesAllOfThem) {
+  expect_flight_apart<2>();
+  expect_flight_apart<3>();
+}
+
+// Whatever that may be: but where it may come down on joints, these have to have closed to half a
+// millimetre before.
+TEST(FewerSubsteps, AQuarterWhileSomethingFliesAndJointsAreClosed) {
+  for (const auto& [apart, substeps] :
+       std::vector<std::pair<float, std::uint32_t>>{{0.0f, 1u}, {0.0004f, 1u}, {0.0006f, 4u}}) {
+    Pendulum<2> pendulum({});
+    const BodyId flies = add_flying(pendulum.world);
+    step(pendulum.world, 30);
+    pendulum.lower_heavy(apart);
+    step(pendulum.world, 1);
+    EXPECT_EQ(pendulum.substeps(), substeps) << apart;
+    ASSERT_TRUE(pendulum.world.destroy_body(flies).ok());
+    pendulum.lower_heavy(apart);
+    step(pendulum.world, 1);
+    EXPECT_EQ(pendulum.substeps(), 1u) << apart;
+  }
 }
 
 // What holds is a force, so neither the one change nor the other moves what rests.
@@ -194,10 +264,10 @@ static void expect_rest_through_changes() {
     if (change % 2 == 0) {
       Vec<D> far = Vec<D>::zero();
       far[0] = 50.0f;
-      far[1] = 400.0f;
-      const BodyId falls = add_at<D>(column.world, far, ball<D>(0.5f));
+      far[1] = 0.5f;
+      const BodyId stands = add_at<D>(column.world, far, ball<D>(0.5f));
       step(column.world, 1);
-      ASSERT_TRUE(column.world.destroy_body(falls).ok());
+      ASSERT_TRUE(column.world.destroy_body(stands).ok());
     } else {
       step(column.world, 1);
     }
