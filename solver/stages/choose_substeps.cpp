@@ -1,5 +1,4 @@
 #include <algorithm>
-#include <span>
 #include <utility>
 
 #include "solver/stages/stages.hpp"
@@ -66,14 +65,25 @@ static bool joints_in_all(const IslandSolver<D>& solver) {
   return true;
 }
 
-/// What the fastest turns in `time_s`, rad, of all but what flies.
+/// What the fastest turns in `time_s`, rad, of all whose turn a constraint feels. Where joints
+/// carry what lies on them, `rolls`, a ball that is touched and not held may turn as it likes: its
+/// contacts stay where they are. Without joints a weight would sink into a pebble by twice as much.
 template <int D>
-static float most_turn(float time_s, const StepScratch<D>& scratch) {
+static float most_turn(float time_s, bool rolls, const StepScratch<D>& scratch) {
   float fastest = 0.0f;
-  const auto count = static_cast<std::size_t>(in_substeps(scratch).end);
-  for (const std::uint32_t slot : std::span(scratch.moving_bodies).first(count))
-    fastest = std::max(fastest, length(scratch.motions[slot].spin));
-  return time_s * fastest;
+  const auto take = [&](std::uint32_t slot) {
+    const Spin<D> spin = scratch.motions[slot].spin;
+    fastest = std::max(fastest, dot(spin, spin));
+  };
+  for (const JointRow<D>& row : scratch.joint_rows) {
+    take(row.body_a);
+    take(row.body_b);
+  }
+  for (const LiveContact<D>& live : scratch.live) {
+    if (!rolls || !live.a_is_ball) take(live.body_a);
+    if (!rolls || !live.b_is_ball) take(live.body_b);
+  }
+  return time_s * sqrt(fastest);
 }
 
 /// By what the number of substeps is divided: 1, 2 or 4.
@@ -83,9 +93,9 @@ static std::uint32_t fewer_by(const StepContext<D>& context, StepScratch<D>& scr
   if (substeps < 4 || substeps % 2 != 0 || !islands_have_all(scratch)) return 1;
   part_from_islands(scratch);
   if (may_land_on_open_joints(scratch)) return 1;
-  const float turn_rad = most_turn(context.h, scratch);
-  const bool quarter = substeps % 4 == 0 && joints_in_all(scratch.islands_solved);
-  if (quarter && 4.0f * turn_rad <= kTurn_rad) return 4;
+  const bool jointed = joints_in_all(scratch.islands_solved);
+  const float turn_rad = most_turn(context.h, jointed, scratch);
+  if (jointed && substeps % 4 == 0 && 4.0f * turn_rad <= kTurn_rad) return 4;
   return 2.0f * turn_rad <= kTurn_rad ? 2 : 1;
 }
 

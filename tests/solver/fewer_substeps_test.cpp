@@ -159,6 +159,20 @@ TEST(FewerSubsteps, NotWhereSweepsAct) {
   EXPECT_EQ(substeps_after<2>(30, {{}, 0.5f}), 4u);
 }
 
+// Its contacts stay where they are, of a box they do not.
+TEST(FewerSubsteps, AQuarterWhileABallRollsOnWhatJointsHold) {
+  for (const bool is_ball : {true, false}) {
+    Pendulum<2> pendulum({});
+    step(pendulum.world, 30);
+    BodyDef<2> body;
+    body.position = at<2>(20.0f, 6.5f);
+    body.spin[0] = 3.1f;
+    add(pendulum.world, body, is_ball ? ball<2>(0.25f) : box(0.25f, 0.25f));
+    step(pendulum.world, 1);
+    EXPECT_EQ(pendulum.substeps(), is_ball ? 1u : 4u);
+  }
+}
+
 // 0.025 rad in a substep of 1/120 s.
 TEST(FewerSubsteps, NotWhileSomethingTurnsFast) {
   EXPECT_EQ(substeps_after<2>(30, {{}, 0.0f, 0.0f, 2.9f}), 2u);
