@@ -46,7 +46,7 @@ struct JointRow : ConeLimit<D> {
   float impulse_max[2];  ///< N s and N m s; length of a block's impulse.
   bool holds_point;      ///< Of both bodies, its anchors, at one place (prepare_joints).
   bool parted;           ///< Its points were far apart when the tick began (prepare_joints).
-  bool open;             ///< They were apart, by what a blow would open on.
+  bool open;             ///< They were apart by more than a blow may open on (prepare_joints).
   bool in_island;        ///< The equalities belong to the island solver.
   bool solved_directly;  ///< They belong to it or to the tree solver.
   bool relaxes;          ///< All the same relax sweeps act on it.

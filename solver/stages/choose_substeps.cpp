@@ -128,8 +128,9 @@ void rescale_impulses(float scale, StepScratch<D>& scratch) {
 /// needs them only to follow how it turns. So where it is all that moves but for what flies, and
 /// nothing of it turns fast, half as many do, and where joints hold it a quarter.
 ///
-/// Reads which islands are taken, spins and damping; writes who moves, who of them flies, their
-/// accelerations in that order, the damping of a substep and the impulses that it begins with.
+/// Reads which islands are taken, joint rows, live contacts, spins and damping; writes who moves,
+/// who of them flies, their accelerations in that order, the damping of a substep and the impulses
+/// that it begins with.
 /// @returns the context of the substeps. Serial.
 template <int D, int W>
 StepContext<D> choose_substeps(const StepContext<D>& context, const WorldState<D>& state,
