@@ -1,8 +1,11 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cctype>
+#include <filesystem>
 #include <regex>
 #include <set>
+#include <string>
 
 #include "tests/places.hpp"
 #include "tests/tidy/sources.hpp"
@@ -134,15 +137,42 @@ static Complaints against_claims(const Source& page, const Names& tests) {
   return complaints;
 }
 
-/// Links within the repository that lead nowhere.
+/// What headings of a page are called in links, as the hosts of repositories call them.
+static Names anchors_of(const Source& page) {
+  Names anchors;
+  for (const std::string& line : page.lines) {
+    const std::size_t begin = line.find_first_not_of('#');
+    if (begin == 0 || begin == std::string::npos || line[begin] != ' ') continue;
+    std::string anchor;
+    for (const char letter : line.substr(begin + 1)) {
+      const auto code = static_cast<unsigned char>(letter);
+      if (letter == ' ') anchor += '-';
+      if (std::isalnum(code) != 0 || letter == '-' || letter == '_')
+        anchor += static_cast<char>(std::tolower(code));
+    }
+    anchors.insert(anchor);
+  }
+  return anchors;
+}
+
+/// Whether a link of this page, "file#heading", has either of them empty or there.
+static bool leads_somewhere(const Source& page, const std::string& file,
+                            const std::string& heading) {
+  if (file.empty()) return anchors_of(page).contains(heading);
+  const std::filesystem::path folder = std::filesystem::path(page.path).parent_path();
+  const std::string path = (folder / file).lexically_normal().generic_string();
+  if (!std::filesystem::exists(places::source(path))) return false;
+  return heading.empty() || anchors_of(read_source(path)).contains(heading);
+}
+
+/// Links within the repository that lead nowhere: to no file, or to no heading of a page.
 static Complaints against_links(const Source& page) {
-  static const std::regex kLink(R"(\]\(([^)#:]+)(#[^)]*)?\))");
-  const std::filesystem::path folder =
-      std::filesystem::path(places::source(page.path)).parent_path();
+  static const std::regex kLink(R"(\]\(([^)#:]*)(?:#([^)]*))?\))");
   Complaints complaints;
-  for (const std::string& link : names_in(page, kLink))
-    if (!std::filesystem::exists(folder / link))
-      complaints.push_back(page.path + " links to " + link + ", which does not exist");
+  for (const std::string& line : page.lines)
+    for (std::sregex_iterator link(line.begin(), line.end(), kLink), end; link != end; ++link)
+      if (!leads_somewhere(page, (*link)[1], (*link)[2]))
+        complaints.push_back(page.path + " has the link " + link->str() + ", which leads nowhere");
   return complaints;
 }
 
@@ -163,8 +193,13 @@ TEST(Pages, ThatNameWhatIsGoneAreSeen) {
   EXPECT_EQ(complaints("`Digest.IsSmall` `Digest.Is...` `Digest.*` `world.hpp` `World.step`"), 0u);
   EXPECT_EQ(complaints("`Digest.IsGone`"), 1u);
   EXPECT_EQ(complaints("`Digest.Are...` and `Snapshot.*`"), 2u);
-  EXPECT_EQ(against_links(make_source("a.md", "[x](docs/none.md)")).size(), 1u);
-  EXPECT_EQ(against_links(make_source("a.md", "[x](README.md#a)")).size(), 0u);
+  const auto dead_links = [](const char* text) {
+    return against_links(make_source("a.md", text)).size();
+  };
+  EXPECT_EQ(dead_links("[x](docs/none.md) [y](docs/none.md#z)"), 2u);
+  EXPECT_EQ(dead_links("[x](README.md) [y](README.md#two-commands) [z](https://a.b/c#d)"), 0u);
+  EXPECT_EQ(dead_links("[x](README.md#no-commands)"), 1u);
+  EXPECT_EQ(dead_links("## `One` thing, said\n[x](#one-thing-said) [y](#one)"), 1u);
 }
 
 }  // namespace cycloid::tidy
