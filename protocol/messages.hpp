@@ -52,6 +52,10 @@ inline constexpr std::uint32_t kHelloBytesMax = 1024;  ///< Before the hello is 
 inline constexpr std::uint32_t kClientMessageBytesMax = 4096;
 inline constexpr std::uint32_t kServerMessageBytesMax = 64u << 20;
 
+/// All ticks of messages and logs lie below. No match comes near it, ticks of a lead can be added
+/// without a thought, and each is a number that JSON has, too.
+inline constexpr std::uint64_t kTickEnd = std::uint64_t{1} << 53;
+
 inline constexpr std::size_t kNameBytesMax = 64;
 inline constexpr std::size_t kRoomNameBytesMax = 64;
 inline constexpr std::size_t kTokenBytesMax = 512;

@@ -5,6 +5,7 @@
 
 #include "protocol/crc32c.hpp"
 #include "protocol/little_endian.hpp"
+#include "protocol/messages.hpp"
 #include "protocol/utf8.hpp"
 #include "scenes/catalogue.hpp"
 #include "scenes/scene.hpp"
@@ -16,8 +17,6 @@ namespace {
 constexpr std::array<char, 8> kMagic = {'C', 'Y', 'C', 'L', 'O', 'G', '\r', '\n'};
 constexpr std::size_t kFixedBytes = 16;  ///< Magic, format, payload size.
 constexpr std::size_t kHeaderCheckBytes = 4;
-/// No match comes near it, and every tick behind it is a number that JSON has, too.
-constexpr std::uint64_t kBranchTickEnd = std::uint64_t{1} << 53;
 
 template <class Range>
 void append_sized(const Range& range, Bytes& into) {
@@ -48,7 +47,7 @@ bool read_payload(std::span<const std::byte> payload, LogHeader& header) {
   const auto scene = reader.take_bytes(reader.take<std::uint32_t>());
   header.scene.assign(scene.begin(), scene.end());
   const bool readable = is_utf8(header.build) && is_utf8(header.room) && is_utf8(header.scene_name);
-  return !reader.failed && reader.bytes.empty() && readable && header.branch_tick < kBranchTickEnd;
+  return !reader.failed && reader.bytes.empty() && readable && header.branch_tick < kTickEnd;
 }
 
 std::string both(const std::string& what, const std::string& theirs, std::uint32_t ours) {

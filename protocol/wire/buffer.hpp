@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstring>
 #include <memory>
@@ -180,6 +181,31 @@ inline bool part_fits(std::uint32_t total_bytes, std::uint32_t offset, std::size
 
 inline bool is_profile(Profile profile) {
   return profile == Profile::kExact || profile == Profile::kQuantised;
+}
+
+/// The highest tick that a message speaks of; 0 where it speaks of none.
+template <class Message>
+std::uint64_t highest_tick(const Message& message) {
+  if constexpr (requires { message.tick; }) return message.tick;
+  return 0;
+}
+inline std::uint64_t highest_tick(const TickDigests& said) {
+  return said.first_tick;  // Its digests are few.
+}
+inline std::uint64_t highest_tick(const RoomNotice& notice) {
+  const bool rewound = notice.kind == NoticeKind::kRewound;
+  return rewound ? std::max(notice.tick, notice.value) : notice.tick;
+}
+
+/// The body, unless it could not be read or speaks of a tick that none has.
+template <class Message, class Body>
+void take_body(std::optional<Body>&& body, Decoded<Message>& into) {
+  if (!body) return;
+  const std::uint64_t tick = highest_tick(*body);
+  if (tick < kTickEnd)
+    into.message.emplace(std::move(*body));
+  else
+    into.error = "tick " + std::to_string(tick) + ", of less than " + std::to_string(kTickEnd);
 }
 
 // What both directions say.

@@ -244,8 +244,7 @@ void take(const Table* table, Decoded<Message>& into) {
     into.error = "a message without a body";
     return;
   }
-  auto body = read(*table, into.error);
-  if (body) into.message.emplace(std::move(*body));
+  take_body(read(*table, into.error), into);
 }
 
 }  // namespace

@@ -4,7 +4,9 @@
 
 #include <cstdint>
 #include <cstring>
+#include <string>
 #include <variant>
+#include <vector>
 
 #include "protocol/utf8.hpp"
 #include "tests/protocol/samples.hpp"
@@ -258,6 +260,41 @@ TEST(Codec, ValuesOutOfRangeAreRefusedByName) {
   frame = samples::frame(1);
   frame.events.resize(kFrameEventsMax + 1);
   EXPECT_EQ(server_error(frame), "a frame of 3 seats, 1025 events and 1 changes");
+}
+
+/// A client that counts up to a tick near the end of numbers would never come there.
+TEST(Codec, TicksThatNoneHasAreRefused) {
+  const auto client_error = [](const ClientMessage& message) {
+    return decode_client(samples::payload_of(encode(message))).error;
+  };
+  const auto server_error = [](const ServerMessage& message) {
+    return decode_server(samples::payload_of(encode(message))).error;
+  };
+  const std::vector<std::byte> part(4);
+  for (const std::uint64_t tick : {kTickEnd, ~std::uint64_t{0}}) {
+    const std::string error =
+        "tick " + std::to_string(tick) + ", of less than " + std::to_string(kTickEnd);
+    EXPECT_EQ(client_error(Input{tick, {}}), error);
+    EXPECT_EQ(client_error(Digest{tick, 1}), error);
+    EXPECT_EQ(client_error(Ack{tick}), error);
+    EXPECT_EQ(client_error(TickDigests{tick, {1}}), error);
+    EXPECT_EQ(client_error(StatePart{tick, 4, 0, part}), error);
+
+    EXPECT_EQ(server_error(Welcome{0, 4, tick, 60000, 2}), error);
+    EXPECT_EQ(server_error(samples::frame(tick)), error);
+    EXPECT_EQ(decode_server(samples::payload_of(encode_packed(samples::frame(tick)))).error, error);
+    EXPECT_EQ(server_error(Snapshot{tick, 1, part}), error);
+    EXPECT_EQ(server_error(SnapshotPart{tick, 1, 4, 0, part}), error);
+    EXPECT_EQ(server_error(StateDelta{tick, 0, 1, Profile::kExact, part}), error);
+    EXPECT_EQ(server_error(Digest{tick, 1}), error);
+    EXPECT_EQ(server_error(Pong{1, tick}), error);
+    EXPECT_EQ(server_error(Margin{tick, 0, 0, 0}), error);
+    EXPECT_EQ(server_error(StateWanted{tick}), error);
+    EXPECT_EQ(server_error(RoomNotice{NoticeKind::kSlowed, tick, 1, ""}), error);
+    EXPECT_EQ(server_error(RoomNotice{NoticeKind::kRewound, 1, tick, ""}), error);
+  }
+  EXPECT_EQ(client_error(Ack{kTickEnd - 1}), "");
+  EXPECT_EQ(server_error(RoomNotice{NoticeKind::kSlowed, 1, kTickEnd, ""}), "") << "milliseconds";
 }
 
 TEST(Codec, SizesAreCheckedBeforeAnythingIsRead) {

@@ -33,7 +33,7 @@ InputFrame frame_of_eight() {
 
 InputFrame largest_frame() {
   InputFrame frame;
-  frame.tick = ~std::uint64_t{0};
+  frame.tick = kTickEnd - 1;
   for (std::uint32_t seat = 0; seat < scenes::kSeatsMax; ++seat) {
     const auto origin = static_cast<Origin>(seat % 4 + 1);
     frame.seats.push_back({origin, {{-1, 32767, -32768, 1}, 0xffff}});
