@@ -1,5 +1,6 @@
 #include "client/net/attempt.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "client/replica/evidence.hpp"
@@ -99,7 +100,8 @@ void Visit::Attempt::receive(const protocol::ServerMessage& message) {
   if (progress.phase == Phase::kRefused) return leave(End::kRefused, progress.reason);
   if (progress.phase == Phase::kFailed) return leave(End::kFailed, progress.reason);
   const std::uint64_t first = first_tick_.value_or(progress.first_tick);
-  if (options_.ticks != 0 && progress.begun() && progress.last_tick >= first + options_.ticks) {
+  const std::uint64_t seen = std::max(progress.last_tick, first) - first;
+  if (options_.ticks != 0 && progress.begun() && seen >= options_.ticks) {
     react();
     leave(End::kTicks, "all ticks seen");
   }

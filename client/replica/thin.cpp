@@ -21,7 +21,7 @@ Thin::Thin(scenes::Simulation simulation, FollowerOptions options)
 
 std::vector<scenes::Pose> Thin::poses() const {
   if (!quantised_) return simulation_.poses();
-  const protocol::QuantisedState& state = states_.quantised();
+  const protocol::QuantisedState& state = states_.empty() ? before_rewind_ : states_.quantised();
   std::vector<scenes::Pose> poses;
   for (const protocol::QuantisedBody& body : state.bodies) {
     poses.push_back(protocol::pose_of(body, state.dimension));
@@ -85,9 +85,10 @@ void Thin::took(std::uint64_t tick, std::uint64_t interval, Outbox& out) {
   send_inputs(tick + lead() + most - 1, most + 3, out);
 }
 
+/// What was shown last is shown until the exact state comes, which may take parts.
 void Thin::on_rewound(std::uint64_t) {
+  if (quantised_ && !states_.empty()) before_rewind_ = states_.quantised();
   states_.forget_all();
-  quantised_ = false;
 }
 
 void Thin::on_frame(const protocol::InputFrame& frame, Outbox&) {

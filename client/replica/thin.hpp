@@ -47,6 +47,7 @@ class Thin final : public Follower {
   protocol::ReceivedStates states_;  ///< Acknowledged; of the profile that was asked for.
   bool quantised_ = false;           ///< Whether the newest one came quantised.
   std::uint64_t quantised_digest_ = 0;
+  protocol::QuantisedState before_rewind_;  ///< Shown while no state has come since.
 };
 
 }  // namespace cycloid::client

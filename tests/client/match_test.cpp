@@ -53,6 +53,7 @@ TEST_P(SameMatch, ServerClientsHeadlessReplayAndRollbackAgreeTickForTick) {
   options.port = served.port();
   options.scene = scene;
   options.input = wild_input;
+  options.ticks = ~std::uint64_t{0};  // Never so many, however they are counted.
   std::vector<std::future<JoinReport>> clients;
   for (std::size_t i = 0; i < std::min<std::size_t>(2, scene.seats.size()); ++i)
     clients.push_back(std::async(std::launch::async, [options] { return join(options); }));

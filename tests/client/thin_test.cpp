@@ -209,6 +209,23 @@ TEST_F(ThinStates, AQuantisedClientGoesOnFromAWholeExactDelta) {
   EXPECT_EQ(follower.progress().deltas_dropped, 0u);
 }
 
+TEST_F(ThinStates, WhatWasShownBeforeARewindIsShownUntilTheStateComes) {
+  Thin follower(make(), options_of(Profile::kQuantised));
+  protocol::StateFeed states(deltas(Profile::kQuantised));
+  follower.receive(authority_.welcome(0), outbox_);
+  for (int i = 0; i < 30; ++i) tick(states);
+  follower.receive(states.delta(std::nullopt)->message, outbox_);
+  const auto shown = follower.poses();
+  const std::uint64_t digest = follower.digest();
+  ASSERT_NE(shown.at(1).position, make().poses().at(1).position) << "or it would prove nothing";
+  follower.receive(protocol::RoomNotice{protocol::NoticeKind::kRewound, 30, 10, ""}, outbox_);
+  ASSERT_EQ(follower.progress().phase, Phase::kLoading);
+  ASSERT_EQ(follower.poses().size(), shown.size());
+  for (std::size_t i = 0; i < shown.size(); ++i)
+    EXPECT_EQ(follower.poses()[i].position, shown[i].position);
+  EXPECT_EQ(follower.digest(), digest);
+}
+
 TEST_F(ThinStates, CorruptDeltasEndTheSession) {
   const protocol::Snapshot state = authority_.snapshot();
   protocol::StateDelta good{0, 0, state.digest, Profile::kExact, {}};
