@@ -1,5 +1,6 @@
 #pragma once
 
+#include <algorithm>
 #include <chrono>
 #include <cstddef>
 #include <cstdint>
@@ -30,7 +31,7 @@ struct Limits {
   std::chrono::nanoseconds resync_window{std::chrono::minutes{5}};
   std::uint32_t words_per_input_max = 8;  ///< Inputs that one client may say for the same tick.
   std::uint64_t messages_per_s = 1200;    ///< Of one client, twice as many at once.
-  std::uint64_t bytes_per_s = 262144;     ///< Likewise.
+  std::uint64_t bytes_per_s = 262144;     ///< Likewise; of both see `at_tick_rate`.
 
   std::chrono::nanoseconds resume{std::chrono::seconds{10}};  ///< 0: a lost seat is free at once.
   std::uint32_t slow_ticks_max = 120;  ///< Inputs missed in a row before `RoomOptions::slow`.
@@ -42,6 +43,19 @@ struct Limits {
   std::size_t baseline_bytes_max = std::size_t{4} << 20;
   std::size_t snapshot_bytes_max = 1200;  ///< Of one quantised snapshot.
 };
+
+/// The limits of a room of so many ticks a second: an honest client says a message or two a tick,
+/// so what one may say in a second stands for up to 300 ticks, and is as many times more where
+/// there are more.
+inline Limits at_tick_rate(std::uint32_t tick_rate_millihertz, Limits limits) {
+  constexpr std::uint64_t kMillihertz = 300'000;
+  constexpr std::uint64_t kMost = 1'000'000'000;  // Twice as many fit a Rate.
+  for (std::uint64_t* per_s : {&limits.messages_per_s, &limits.bytes_per_s}) {
+    const std::uint64_t scaled = *per_s * tick_rate_millihertz / kMillihertz;
+    *per_s = std::max(*per_s, std::min(scaled, kMost));
+  }
+  return limits;
+}
 
 struct RoomOptions {
   Limits limits;

@@ -70,10 +70,12 @@ struct Peer {
   bool state_due = false;  ///< An exact state is to be begun as soon as the connection takes bytes.
   std::int64_t state_due_ns = 0;
   std::uint32_t state_restarts = 0;
-  std::uint64_t exact_tick = 0;  ///< Of its last exact state; older digests say nothing.
-  std::uint64_t next_frame = 0;  ///< Tick of the next frame to queue for a lockstep client.
-  protocol::SentStates sent;     ///< Of a snapshot client.
-  std::uint64_t free_bytes = 0;  ///< Of its state, which the room has asked for.
+  std::uint64_t exact_tick = 0;         ///< Of its last exact state; older digests say nothing.
+  std::uint64_t next_frame = 0;         ///< Tick of the next frame to queue for a lockstep client.
+  protocol::SentStates sent;            ///< Of a snapshot client, as the next two.
+  std::uint64_t acknowledged_tick = 0;  ///< The last one that it has said, of whichever branch.
+  std::uint32_t rewinds_unheard = 0;    ///< That it was told of, and has not shown to have heard.
+  std::uint64_t free_bytes = 0;         ///< Of its state, which the room has asked for.
   bool desync_noticed = false;
 };
 

@@ -36,6 +36,7 @@ Room::Room(RoomOptions options, scenes::Simulation simulation, RoomHooks hooks)
       keyframes_(options_.limits.keyframe_bytes_max),
       feed_({options_.limits.snapshot_bytes_max, options_.limits.baseline_bytes_max,
              ticks_of_3_s(options_.tick_rate_millihertz)}) {
+  options_.limits = at_tick_rate(options_.tick_rate_millihertz, options_.limits);
   keyframes_.push(states_.of(simulation_, digest_), 0);
 }
 

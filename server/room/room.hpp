@@ -186,6 +186,7 @@ class Room {
   void take(PeerId id, Peer& peer, const protocol::ClientMessage& message);
   void on_input(PeerId id, Peer& peer, const protocol::Input& input);
   void on_ack(PeerId id, Peer& peer, const protocol::Ack& ack);
+  void on_ack_of_snapshot(Peer& peer, std::uint64_t tick);
   void prove_secret(Peer& peer);
 
   // room_desync.cpp
@@ -205,6 +206,7 @@ class Room {
   void after_tick();
   void keep(protocol::InputFrame frame);
   void enforce_slow_policy();
+  void look_on_late(Peer& peer);
   void expire_seats();
   void fault(const protocol::InputFrame& frame, const solver::Error& error);
   void check_log();

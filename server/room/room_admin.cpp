@@ -58,9 +58,9 @@ void Room::resume() {
 }
 
 void Room::set_limits(const Limits& limits) {
-  options_.limits = limits;
+  options_.limits = at_tick_rate(options_.tick_rate_millihertz, limits);
   const std::int64_t now = hooks_.now_ns();
-  for (auto& [id, peer] : peers_) peer.set_limits(limits, now);
+  for (auto& [id, peer] : peers_) peer.set_limits(options_.limits, now);
 }
 
 void Room::announce_drain(std::chrono::milliseconds within, const std::string& reason) {

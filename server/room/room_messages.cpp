@@ -133,11 +133,8 @@ void Room::on_ack(PeerId id, Peer& peer, const protocol::Ack& ack) {
                   "an acknowledgement of tick " + std::to_string(ack.tick) + ", the last made is " +
                       std::to_string(visible_tick(peer)));
   }
+  if (peer.mode == protocol::Mode::kSnapshot) return on_ack_of_snapshot(peer, ack.tick);
   if (was_taken_back(ack.tick)) return;
-  if (peer.mode == protocol::Mode::kSnapshot) {
-    if (!peer.state_due && ack.tick >= peer.exact_tick) (void)peer.sent.acknowledge(ack.tick);
-    return;
-  }
   // Of a client that came back with its state: the frames since are enough, if they are kept.
   const bool waits = peer.resumed && peer.welcome_due && peer.state_due;
   const std::uint64_t made = visible_tick(peer);
@@ -148,6 +145,16 @@ void Room::on_ack(PeerId id, Peer& peer, const protocol::Ack& ack) {
   peer.next_frame = ack.tick + 1;
   say_welcome(id, peer, ack.tick);
   if (peer.playing()) send_frames(id, peer, hooks_.now_ns());
+}
+
+/// A client acknowledges rising ticks until it hears of a rewind, and begins anew with the exact
+/// state behind it. So each fall of the tick shows that it has heard of one more; when it has of
+/// all, what it says is of this branch. Until then a tick that was taken back may be of another.
+void Room::on_ack_of_snapshot(Peer& peer, std::uint64_t tick) {
+  if (tick < peer.acknowledged_tick && peer.rewinds_unheard > 0) --peer.rewinds_unheard;
+  peer.acknowledged_tick = tick;
+  if (peer.rewinds_unheard > 0 && was_taken_back(tick)) return;
+  if (!peer.state_due && tick >= peer.exact_tick) (void)peer.sent.acknowledge(tick);
 }
 
 void Room::prove_secret(Peer& peer) {

@@ -11,8 +11,9 @@ std::uint64_t Room::visible_tick(const Peer& peer) const {
 
 std::shared_ptr<const ExactState> Room::late_state(const Peer& peer) const {
   auto state = keyframes_.at_or_before(visible_tick(peer));
-  const bool goes_on = peer.mode == protocol::Mode::kLockstep && !peer.welcome_due;
-  if (state && goes_on && state->tick() + 1 < peer.next_frame) return nullptr;
+  const bool lockstep = peer.mode == protocol::Mode::kLockstep;
+  const std::uint64_t seen = lockstep ? peer.next_frame - 1 : peer.exact_tick;
+  if (state && !peer.welcome_due && state->tick() < seen) return nullptr;
   return state;
 }
 

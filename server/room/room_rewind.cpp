@@ -111,6 +111,7 @@ void Room::rewind_peers(std::uint64_t tick) {
     if (peer.delay_ticks > 0 && seen <= tick) continue;
     want_state(peer);
     peer.exact_tick = 0;
+    ++peer.rewinds_unheard;
     // Who sees the match late is given a kept state, which may be older than what it may see.
     const std::uint64_t shown = visible_tick(peer);
     const auto kept = peer.delay_ticks > 0 ? keyframes_.at_or_before(shown) : nullptr;

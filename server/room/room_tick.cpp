@@ -151,10 +151,17 @@ void Room::enforce_slow_policy() {
       continue;
     }
     give_up_seat(peer, protocol::EventKind::kKick);
-    if (peer.role != Role::kAdmin) peer.delay_ticks = options_.spectator_delay_ticks;
+    if (peer.role != Role::kAdmin) look_on_late(peer);
     notice(Notice::Kind::kLeave,
            "client " + std::to_string(found->first) + " looks on from now on: " + why);
   }
+}
+
+/// A player who looks on from now on sees the match late, but nothing older than it has seen.
+void Room::look_on_late(Peer& peer) {
+  peer.delay_ticks = options_.spectator_delay_ticks;
+  const bool thin = peer.mode == protocol::Mode::kSnapshot;
+  if (thin && peer.delay_ticks > 0) peer.exact_tick = std::max(peer.exact_tick, simulation_.tick());
 }
 
 void Room::expire_seats() {

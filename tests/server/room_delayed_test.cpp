@@ -224,5 +224,28 @@ TEST_F(RoomDelayed, ADigestOfAPlayerWhoLooksOnSinceIsNoMistake) {
   EXPECT_EQ(refusal(id).code, protocol::Refusal::kBadMessage);
 }
 
+TEST_F(RoomDelayed, APlayerOfSnapshotsWhoLooksOnSinceSeesNothingOlder) {
+  RoomOptions options;
+  options.spectator_delay_ticks = 50;
+  options.slow = SlowPeer::kSpectate;
+  options.limits.slow_ticks_max = 30;
+  options.limits.keyframe_ticks = 7;
+  open_with(options);
+  const PeerId id = enter(0, protocol::Mode::kSnapshot);
+  say(id, protocol::Input{1, push(1)});
+  std::uint64_t seen = 0;
+  for (int i = 0; i < 200; ++i) {
+    run(1);
+    for (const auto& delta : only<protocol::StateDelta>(hear(id))) {
+      EXPECT_GT(delta.tick, seen);
+      seen = delta.tick;
+    }
+    const bool plays = room_->seats()[0].state == SeatState::kHeld;
+    EXPECT_EQ(plays, room_->tick() <= 30);
+    EXPECT_TRUE(room_->tick() != 31 || seen == 30) << "as a player all that there is";
+  }
+  EXPECT_EQ(seen, 147u) << "the state kept of what it may see";
+}
+
 }  // namespace
 }  // namespace cycloid::server

@@ -262,6 +262,26 @@ TEST_F(RoomInputs, NewRatesAreOfThoseWhoAreThereToo) {
   EXPECT_EQ(refusal(id).reason, "more than 5 messages a second");
 }
 
+TEST_F(RoomInputs, RatesGrowWithTheTicksOfASecond) {
+  RoomOptions options;
+  options.tick_rate_millihertz = 6'000'000;
+  open_with(options);
+  const PeerId id = enter(0);
+  for (int tick = 0; tick < 18'000 && !room_->wants_close(id); ++tick) {
+    say(id, protocol::Input{room_->tick() + 1, push(tick)});
+    say(id, protocol::Ping{1});
+    run(1);
+    (void)hear(id);
+  }
+  EXPECT_FALSE(room_->wants_close(id)) << "two messages a tick for three seconds";
+  for (int tick = 0; tick < 2'000 && !room_->wants_close(id); ++tick) {
+    for (int ping = 0; ping < 50; ++ping) say(id, protocol::Ping{1});
+    run(1);
+    if (!room_->wants_close(id)) (void)hear(id);
+  }
+  EXPECT_EQ(refusal(id).reason, "more than 24000 messages a second");
+}
+
 TEST_F(RoomInputs, MessagesAndBytesOfAConnectionAreRateLimited) {
   Limits limits;
   limits.messages_per_s = 100;

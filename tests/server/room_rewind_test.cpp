@@ -247,6 +247,54 @@ TEST_F(RoomBranches, NoSnapshotDiffersFromAStateThatWasTakenBack) {
   EXPECT_EQ(only<protocol::StateDelta>(hear(id))[0].baseline_tick, 156u);
 }
 
+/// A client of snapshots that takes in and acknowledges all that it hears.
+struct Taker {
+  std::uint64_t tick = 0;
+  std::uint64_t baseline_tick = 0;  ///< Of the last delta.
+
+  /// @returns what it says.
+  std::vector<protocol::Ack> take(const std::vector<protocol::ServerMessage>& messages) {
+    std::vector<protocol::Ack> said;
+    for (const protocol::ServerMessage& message : messages) {
+      if (const auto* delta = std::get_if<protocol::StateDelta>(&message)) {
+        tick = delta->tick;
+        baseline_tick = delta->baseline_tick;
+        said.push_back({tick});
+      }
+      const auto* part = std::get_if<protocol::SnapshotPart>(&message);
+      if (part != nullptr && part->offset + part->bytes.size() == part->total_bytes) {
+        tick = part->tick;
+        said.push_back({tick});
+      }
+    }
+    return said;
+  }
+};
+
+TEST_F(RoomBranches, SnapshotsAreBuiltOnWhatIsAcknowledgedOnceTheRewindIsHeard) {
+  open();
+  const PeerId id = join(protocol::kSpectator, protocol::Mode::kSnapshot);
+  Taker taker;
+  std::vector<protocol::Ack> on_their_way;
+  const auto play = [&](int ticks) {
+    for (int i = 0; i < ticks; ++i) {
+      run(1);
+      for (const protocol::Ack& ack : on_their_way) say(id, ack);
+      on_their_way = taker.take(hear(id));
+    }
+  };
+  play(300);
+  EXPECT_EQ(taker.baseline_tick, 297u);
+  for (const std::uint64_t to : {60u, 30u, 45u}) {
+    const std::uint64_t from = room_->tick();
+    ASSERT_TRUE(room_->rewind(to));
+    play(8);  // What is on its way when it hears of it is of the branch before.
+    play(static_cast<int>(to == 45u ? 60 : 12));
+    EXPECT_GT(taker.baseline_tick, to);
+    EXPECT_EQ(taker.baseline_tick, taker.tick - 3) << "after the rewind from " << from;
+  }
+}
+
 TEST_F(RoomRewind, KeyframesGoToALogThatWantsThem) {
   log_.keyframe_ticks = 25;
   open();
