@@ -134,10 +134,20 @@ std::string chart_csv(const ChartPlan& plan, const ChartOrigin& origin) {
   return text;
 }
 
+/// A name as a cell, which neither a bar nor a new line may end.
+static std::string markdown_cell(const std::string& name) {
+  std::string cell;
+  for (const char c : name) {
+    if (c == '|') cell += '\\';
+    cell += static_cast<unsigned char>(c) < 0x20 ? ' ' : c;
+  }
+  return cell;
+}
+
 static std::string front_line(const SceneChart& chart, std::size_t index, const ErrorKind& error) {
   const ChartPoint& point = chart.points[index];
   std::string line =
-      "| " + chart.name + " | " + name_of(point.measured.setting) + " | " +
+      "| " + markdown_cell(chart.name) + " | " + name_of(point.measured.setting) + " | " +
       (point.measured.price.rows_per_tick > 0.0 ? short_number(point.measured.price.rows_per_tick)
                                                 : "") +
       " | ";

@@ -2,16 +2,23 @@
 
 #include <stdio.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
 
 namespace cycloid::figures {
 
-// Between single quotes gnuplot reads everything as it stands, but for the quote itself.
+static bool is_control(char c) {
+  return static_cast<unsigned char>(c) < 0x20 || c == 0x7f;
+}
+
+// Between single quotes gnuplot reads everything as it stands, but for the quote itself and the end
+// of the line: what follows that is a command.
 std::string quoted(const std::string& text) {
   std::string result = "'";
-  for (const char c : text) result += c == '\'' ? std::string("''") : std::string(1, c);
+  for (const char c : text)
+    result += c == '\'' ? std::string("''") : std::string(1, is_control(c) ? ' ' : c);
   return result + "'";
 }
 
@@ -41,6 +48,8 @@ std::string gnuplot_script(const experiments::Figure& figure, const std::string&
 }
 
 std::string run_gnuplot(const std::string& script, const std::string& file) {
+  if (std::any_of(file.begin(), file.end(), is_control))
+    return file + ": has control characters in its name, which gnuplot cannot be told";
   FILE* gnuplot = popen("gnuplot -", "w");
   if (gnuplot == nullptr) return "gnuplot cannot be started";
   const bool written = fwrite(script.data(), 1, script.size(), gnuplot) == script.size();

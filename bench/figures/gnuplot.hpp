@@ -10,7 +10,7 @@ namespace cycloid::figures {
 /// give equal text.
 std::string gnuplot_script(const experiments::Figure& figure, const std::string& svg_file);
 
-/// Text between quotes that gnuplot reads as it stands.
+/// Text between quotes that gnuplot reads as it stands, with spaces for control characters.
 std::string quoted(const std::string& text);
 
 /// Runs a program that writes `file`, with the gnuplot that is installed.

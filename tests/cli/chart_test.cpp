@@ -70,6 +70,22 @@ TEST(ChartCommand, TakesNamesAndFiles) {
   EXPECT_EQ(texts[0], texts[1]) << "nothing is timed, so all is the same";
 }
 
+/// Goal: what a scene calls itself is text and nothing else. Method: a name that would be a command
+/// of gnuplot's, a tag of the page and the end of a cell.
+TEST(ChartCommand, NamesOfScenesAreTextAlone) {
+  const Folder folder;
+  nlohmann::json scene = nlohmann::json::parse(run_program({"scene", "export", "stack-10"}).out);
+  scene["name"] = "a\n!touch '" + folder.file("touched") + "'\n<b>|";
+  write_text(folder.file("scene.json"), scene.dump());
+  const Ran ran = run_program({"chart", folder.file("scene.json"), "--out", folder.file("out"),
+                               "--methods", "pgs", "--substeps", "1", "--sweeps", "1", "--error",
+                               "worst", "--ticks", "5", "--repeats", "0"});
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_FALSE(std::filesystem::exists(folder.file("touched")));
+  EXPECT_THAT(read_text(folder.file("out/chart.html")), Not(HasSubstr("<b>")));
+  EXPECT_THAT(read_text(folder.file("out/fronts.md")), HasSubstr("' <b>\\| |"));
+}
+
 TEST(ChartCommand, RefusesBadValuesAndNamesTheOption) {
   const Folder folder;
   struct Case {

@@ -33,6 +33,14 @@ TEST(Figure, ScriptHoldsTheDataAndQuotesTheText) {
   EXPECT_NE(script.find("title 'second'"), std::string::npos);
 }
 
+TEST(Figure, TextDoesNotLeaveItsQuotes) {
+  experiments::Figure figure = sample();
+  figure.title = "a\n!touch out\r\tb'\x7f";
+  const std::string script = gnuplot_script(figure, "out.svg");
+  EXPECT_NE(script.find("set title 'a !touch out  b'' '\n"), std::string::npos);
+  EXPECT_EQ(script.find("\n!"), std::string::npos);
+}
+
 TEST(Figure, IsDrawnTheSameTwice) {
   const auto folder = std::filesystem::temp_directory_path() / "cycloid-figure-test";
   ASSERT_EQ(draw(sample(), folder.string()), "");
@@ -46,6 +54,9 @@ TEST(Figure, IsDrawnTheSameTwice) {
 
 TEST(Figure, SaysWhyItCouldNotBeDrawn) {
   EXPECT_NE(draw(sample(), "/dev/null/folder"), "");
+  const auto folder = std::filesystem::temp_directory_path() / "cycloid-figure\ntest";
+  EXPECT_NE(draw(sample(), folder.string()).find("control characters"), std::string::npos);
+  std::filesystem::remove_all(folder);
 }
 
 }  // namespace cycloid::figures
