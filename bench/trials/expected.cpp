@@ -1,6 +1,8 @@
 #include "bench/trials/expected.hpp"
 
+#include <algorithm>
 #include <sstream>
+#include <vector>
 
 #include "bench/trials/judges.hpp"
 #include "bench/trials/methods.hpp"
@@ -57,26 +59,43 @@ std::string outcome_cell(const std::string& outcome) {
   return verdict == "sags" ? number : "x " + number;
 }
 
-std::string expected_markdown(const ExpectedTable& table) {
+static bool has_method(const std::map<TrialAndMethod, std::string>& cells,
+                       const std::string& method) {
+  return std::any_of(cells.begin(), cells.end(),
+                     [&](const auto& entry) { return entry.first.second == method; });
+}
+
+std::string table_markdown(const std::map<TrialAndMethod, std::string>& cells) {
   std::string text = "| row | trial | number |";
   std::string rule = "|---|---|---|";
+  std::vector<std::string> columns;
   for (const Method& method : methods()) {
-    text += std::string(" ") + method.name + " |";
+    if (!has_method(cells, method.name)) continue;
+    columns.push_back(method.name);
+    text += " " + columns.back() + " |";
     rule += "---|";
   }
   text += "\n" + rule + "\n";
   for (const scenes::Trial& trial : scenes::trials()) {
-    std::string cells;
-    for (const Method& method : methods()) {
-      const auto found = table.find({trial.name, method.name});
-      if (found != table.end()) cells += " " + outcome_cell(found->second) + " |";
+    std::string row;
+    bool any = false;
+    for (const std::string& method : columns) {
+      const auto found = cells.find({trial.name, method});
+      any = any || found != cells.end();
+      row += " " + (found == cells.end() ? "" : found->second) + " |";
     }
-    if (cells.empty()) continue;
+    if (!any) continue;
     const std::string name = std::string(trial.name).substr(sizeof "trial-" - 1);
     text += "| " + std::to_string(trial.row) + " | " + name + " | " + judge_of(trial).metric +
-            " |" + cells + "\n";
+            " |" + row + "\n";
   }
   return text;
+}
+
+std::string expected_markdown(const ExpectedTable& table) {
+  std::map<TrialAndMethod, std::string> cells;
+  for (const auto& [key, outcome] : table) cells[key] = outcome_cell(outcome);
+  return table_markdown(cells);
 }
 
 }  // namespace cycloid::trials

@@ -1,6 +1,5 @@
 #include "bench/trials/shares.hpp"
 
-#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdio>
@@ -8,6 +7,7 @@
 #include <sstream>
 #include <vector>
 
+#include "bench/trials/expected.hpp"
 #include "bench/trials/methods.hpp"
 
 namespace cycloid::trials {
@@ -130,36 +130,10 @@ static std::string shares_cell(const Shares& shares) {
   return (all_stand ? "**" + counts + "**" : counts) + " " + shares.median + ", " + shares.worst;
 }
 
-static bool has_method(const ShareTable& table, const std::string& method) {
-  return std::any_of(table.shares.begin(), table.shares.end(),
-                     [&](const auto& entry) { return entry.first.second == method; });
-}
-
 std::string shares_markdown(const ShareTable& table) {
-  std::string text = "| row | trial | number |";
-  std::string rule = "|---|---|---|";
-  std::vector<std::string> columns;
-  for (const Method& method : methods()) {
-    if (!has_method(table, method.name)) continue;
-    columns.push_back(method.name);
-    text += " " + columns.back() + " |";
-    rule += "---|";
-  }
-  text += "\n" + rule + "\n";
-  for (const scenes::Trial& trial : scenes::trials()) {
-    std::string cells;
-    bool any = false;
-    for (const std::string& method : columns) {
-      const auto found = table.shares.find({trial.name, method});
-      any = any || found != table.shares.end();
-      cells += " " + (found == table.shares.end() ? "" : shares_cell(found->second)) + " |";
-    }
-    if (!any) continue;
-    const std::string name = std::string(trial.name).substr(sizeof "trial-" - 1);
-    text += "| " + std::to_string(trial.row) + " | " + name + " | " + judge_of(trial).metric +
-            " |" + cells + "\n";
-  }
-  return text;
+  std::map<TrialAndMethod, std::string> cells;
+  for (const auto& [key, shares] : table.shares) cells[key] = shares_cell(shares);
+  return table_markdown(cells);
 }
 
 }  // namespace cycloid::trials

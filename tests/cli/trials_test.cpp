@@ -44,6 +44,14 @@ TEST(PerturbedTrials, CountEveryRun) {
   EXPECT_LE(row["median"].get<double>(), row["worst"].get<double>());
 }
 
+TEST(Trials, ShowATableOfTheMethodsThatRan) {
+  const Ran ran =
+      run_program({"trials", "heavy-on-light-10", "--method", "soft-loaded", "--markdown"});
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_THAT(ran.out, HasSubstr("| row | trial | number | soft-loaded |\n|---|---|---|---|\n"));
+  EXPECT_THAT(ran.out, HasSubstr("| 1 | heavy-on-light-10 | sunk, m | **"));
+}
+
 TEST(PerturbedTrials, ShowATableOfTheMethodsThatRan) {
   const Ran ran = perturb({"--markdown"});
   ASSERT_EQ(ran.exit, 0) << ran.err;
