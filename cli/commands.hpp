@@ -5,12 +5,14 @@
 #include <string>
 
 #include "cli/exit_codes.hpp"
+#include "cli/file_options.hpp"
 
 namespace cycloid::cli {
 
 /// What the command line asks for: filled in by the parser, run by main.
 struct Action {
   bool json = false;  ///< One JSON object on stdout instead of text.
+  FileOptions files;
   std::function<Exit()> run;
 };
 

@@ -5,7 +5,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/replaying.hpp"
-#include "cli/run_log.hpp"
+#include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -83,17 +83,20 @@ Exit cut_log(const CutOptions& options, bool json) {
   if (bounds.from != 0) encoder.first_keyframe(keyframe_of(loaded, begin), bytes);
   TickReader reader(loaded);
   std::uint64_t digest = begin.digest();
-  OutputFile file(options.out);
+  WholeFile file(options.out);
+  const auto write = [&] {
+    file.write({reinterpret_cast<const char*>(bytes.data()), bytes.size()});
+    bytes.clear();
+  };
   for (std::uint64_t tick = bounds.from + 1; tick <= bounds.to; ++tick) {
     const protocol::LogTick& read = reader.at(tick);
     encoder.tick(read, bytes);
     digest = read.digest;
-    file.write(bytes);
-    bytes.clear();
+    write();
   }
   encoder.footer({bounds.to, digest, {}}, bytes);
-  file.write(bytes);
-  file.close();
+  write();
+  file.finish();
   if (const std::string blemish = loaded.blemish(); !blemish.empty())
     std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
   const Exit exit = loaded.exit();
@@ -112,12 +115,13 @@ void add_cut(CLI::App& app, Action& action) {
   CLI::App* command = add_command(
       app, "cut", "Write some ticks of a log as a log of their own, which begins with the state",
       action);
-  command->add_option("LOG", options->log, "A .cylog file")->required();
+  action.files.reads(command->add_option("LOG", options->log, "A .cylog file")->required());
   command->add_option("--from", options->from,
                       "Begin with the state after this tick; else as the log begins");
   command->add_option("--to", options->to, "The last tick; 0: that of the log")
       ->capture_default_str();
-  command->add_option("-o,--out", options->out, "The log to write")->required();
+  action.files.writes(
+      command->add_option("-o,--out", options->out, "The log to write")->required());
   add_salvage_option(command, options->loading);
   command->callback(
       [options, &action] { action.run = [=, &action] { return cut_log(*options, action.json); }; });

@@ -216,14 +216,15 @@ void add_demo(CLI::App& app, Action& action) {
   CLI::App* command = add_command(
       app, "demo", "A server and three clients over loopback, then a replay; all must agree",
       action);
-  command->add_option("SCENE", options->scene, "A catalogue name or a scene file")->required();
+  action.files.reads(
+      command->add_option("SCENE", options->scene, "A catalogue name or a scene file")->required());
   command->add_option("--seconds", options->seconds, "How long the match is")
       ->capture_default_str()
       ->check(CLI::Range(0.1, 86400.0));
-  command
-      ->add_option("--log", options->log,
-                   "Where the server writes the match; replaces an older log")
-      ->capture_default_str();
+  action.files.streams(command
+                           ->add_option("--log", options->log,
+                                        "Where the server writes the match; replaces an older log")
+                           ->capture_default_str());
   command->add_flag("--forever", options->forever, "Until a signal, instead of --seconds");
   command->callback([options, &action] {
     action.run = [=, &action] { return Demo(*options).run(action.json); };

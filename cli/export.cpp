@@ -1,10 +1,11 @@
-#include <fstream>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/log_file.hpp"
 #include "cli/output.hpp"
+#include "cli/whole_file.hpp"
 #include "protocol/text.hpp"
 
 namespace cycloid::cli {
@@ -70,12 +71,11 @@ void write_csv(const LoadedLog& loaded, std::ostream& out) {
 
 Exit export_log(const ExportOptions& options) {
   const LoadedLog loaded = load_log(options.log, options.loading);
-  std::ofstream file;
-  if (!options.out.empty()) file.open(options.out, std::ios::binary | std::ios::trunc);
-  std::ostream& out = options.out.empty() ? std::cout : file;
+  std::optional<WholeFile> file;
+  if (!options.out.empty()) file.emplace(options.out);
+  std::ostream& out = file ? file->stream() : std::cout;
   options.format == "csv" ? write_csv(loaded, out) : write_json(loaded, out);
-  if (!options.out.empty()) file.close();
-  if (!options.out.empty() && !file) throw Failure(kExitIo, options.out + ": cannot be written");
+  if (file) file->finish();
   const std::string blemish = loaded.blemish();
   if (!blemish.empty()) std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
   return loaded.exit();
@@ -88,11 +88,11 @@ void add_export(CLI::App& app, Action& action) {
   CLI::App* command = app.add_subcommand(
       "export", "Write every tick of a log with its inputs, events and digest as JSON or CSV");
   command->footer(kExitCodesText);
-  command->add_option("LOG", options->log, "A .cylog file")->required();
+  action.files.reads(command->add_option("LOG", options->log, "A .cylog file")->required());
   command->add_option("--format", options->format, "json or csv")
       ->capture_default_str()
       ->check(CLI::IsMember({"json", "csv"}));
-  command->add_option("-o,--out", options->out, "A file; else stdout");
+  action.files.writes(command->add_option("-o,--out", options->out, "A file; else stdout"));
   add_salvage_option(command, options->loading);
   command->callback([options, &action] { action.run = [=] { return export_log(*options); }; });
 }

@@ -7,14 +7,21 @@
 #else
 #include <dirent.h>
 #include <sys/stat.h>
+#include <unistd.h>
 
 #include <cerrno>
 #include <cstdio>
 #include <memory>
-#include <system_error>
 #endif
 
 namespace cycloid::cli {
+
+/// A circle of links leads nowhere.
+static constexpr int kLinksMax = 40;
+
+bool is_open_file(const std::string& path) {
+  return path.starts_with("/proc/") || path.starts_with("/dev/fd/");
+}
 
 #if defined(__cpp_lib_filesystem)
 
@@ -33,10 +40,34 @@ static void find_below(const std::string& folder, const std::string& suffix,
   }
 }
 
-bool replace_file(const std::string& by, const std::string& file) {
+std::error_code replace_file(const std::string& by, const std::string& file) {
   std::error_code error;
+  const std::filesystem::file_status status = std::filesystem::status(file, error);
+  if (std::filesystem::exists(status))
+    std::filesystem::permissions(by, status.permissions(), error);
   std::filesystem::rename(by, file, error);
-  return !error;
+  return error;
+}
+
+std::string behind_links(const std::string& path) {
+  std::filesystem::path end = path;
+  std::error_code error;
+  for (int i = 0; i < kLinksMax && !is_open_file(end.string()); ++i) {
+    if (!std::filesystem::is_symlink(end, error)) break;
+    end = end.parent_path() / std::filesystem::read_symlink(end, error);
+  }
+  return end.string();
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  std::error_code error;
+  const PathKind kind = kind_of(a);
+  if (kind.exists) return kind.is_file && std::filesystem::equivalent(a, b, error);
+  const auto whole = [&](const std::string& path) {
+    const std::string end = std::filesystem::absolute(behind_links(path), error).string();
+    return std::filesystem::weakly_canonical(end, error);
+  };
+  return !kind_of(b).exists && whole(a) == whole(b);
 }
 
 std::string path_from(const std::string& file, const std::string& path) {
@@ -71,8 +102,28 @@ static void find_below(const std::string& folder, const std::string& suffix,
   }
 }
 
-bool replace_file(const std::string& by, const std::string& file) {
-  return std::rename(by.c_str(), file.c_str()) == 0;
+std::error_code replace_file(const std::string& by, const std::string& file) {
+  if (std::rename(by.c_str(), file.c_str()) == 0) return {};
+  return {errno, std::generic_category()};
+}
+
+std::string behind_links(const std::string& path) {
+  std::string end = path;
+  for (int i = 0; i < kLinksMax && !is_open_file(end); ++i) {
+    char text[4096];
+    const ssize_t size = readlink(end.c_str(), text, sizeof text);
+    if (size <= 0) break;
+    end = path_to(end, {text, static_cast<std::size_t>(size)});
+  }
+  return end;
+}
+
+bool same_file(const std::string& a, const std::string& b) {
+  struct stat of_a {};
+  struct stat of_b {};
+  if (stat(a.c_str(), &of_a) != 0) return behind_links(a) == behind_links(b);
+  return S_ISREG(of_a.st_mode) && stat(b.c_str(), &of_b) == 0 && of_a.st_dev == of_b.st_dev &&
+         of_a.st_ino == of_b.st_ino;
 }
 
 std::string path_from(const std::string&, const std::string& path) {

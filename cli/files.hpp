@@ -1,6 +1,7 @@
 #pragma once
 
 #include <string>
+#include <system_error>
 #include <vector>
 
 namespace cycloid::cli {
@@ -17,8 +18,18 @@ PathKind kind_of(const std::string& path);
 /// Folders behind links are not entered. @throws std::exception where a folder cannot be read.
 std::vector<std::string> files_below(const std::string& folder, const std::string& suffix);
 
-/// Puts a file in the place of another, at once. @returns whether it could.
-bool replace_file(const std::string& by, const std::string& file);
+/// Puts a file in the place of another, at once, with the mode of that where there is one.
+/// @returns why it could not.
+std::error_code replace_file(const std::string& by, const std::string& file);
+
+/// Where a link leads, through all behind it; the path itself where it names none. Those that the
+/// system keeps for open files stay: what they lead to need not have a name.
+std::string behind_links(const std::string& path);
+/// Whether the system keeps what is open under this name: "/proc/self/fd/1".
+bool is_open_file(const std::string& path);
+
+/// Whether both name one regular file, or would if it were there.
+bool same_file(const std::string& a, const std::string& b);
 
 /// How a file names another: the path from the folder of `file`, with '/' between the parts, and an
 /// absolute one where there is no way. Without <filesystem> the path as it is.

@@ -12,6 +12,7 @@
 #include "cli/replaying.hpp"
 #include "cli/report.hpp"
 #include "cli/side_by_side.hpp"
+#include "cli/whole_file.hpp"
 #include "solver/version.hpp"
 
 namespace cycloid::cli {
@@ -212,6 +213,9 @@ Exit check_golden(const CheckOptions& options, Verdict& subject, bool json) {
                                          std::to_string(solver::kSolverVersion));
   }
   const std::vector<scenes::GoldenScene> scenes = chosen(std::move(file), options);
+  for (const scenes::GoldenScene& scene : scenes)
+    if (scenes::is_path(scene.name))
+      refuse_report_on(path_to(options.file, scene.name), "FILE", options.report);
   Report report{"cycloid golden check", "scene", std::vector<Verdict>(scenes.size())};
   side_by_side(scenes.size(), options.play.jobs,
                [&](std::size_t i) { report.verdicts[i] = check_scene(scenes[i], options); });
@@ -238,9 +242,9 @@ void add_golden(CLI::App& app, Action& action) {
   auto making = std::make_shared<MakeOptions>();
   CLI::App* make = add_command(
       *golden, "make", "Play scenes by their scripts and write what to expect of them", action);
-  make->add_option("SCENE", making->scenes, "Catalogue names or scene files");
+  action.files.reads(make->add_option("SCENE", making->scenes, "Catalogue names or scene files"));
   make->add_flag("--catalogue", making->catalogue, "Every scene of the catalogue");
-  make->add_option("-o", making->file, "The file to write; stdout without it");
+  action.files.writes(make->add_option("-o", making->file, "The file to write; stdout without it"));
   make->add_option("--ticks", making->ticks, "How many ticks; the last is always listed [600]")
       ->check(CLI::PositiveNumber);
   make->add_option("--at", making->at, "The ticks to list, by commas [1,10,100,600]")
@@ -256,12 +260,12 @@ void add_golden(CLI::App& app, Action& action) {
                                 "Play the scenes of a golden file and compare every tick; exits "
                                 "with the worst",
                                 action);
-  check->add_option("FILE", checking->file, "A golden file")->required();
+  action.files.reads(check->add_option("FILE", checking->file, "A golden file")->required());
   check->add_option("--ticks", checking->ticks, "Compare the rows up to this tick only")
       ->check(CLI::PositiveNumber);
   check->add_option("--scene", checking->scenes, "Only this scene of the file; may be repeated");
   add_play_options(check, checking->play);
-  add_report_options(check, checking->report);
+  add_report_options(check, checking->report, action.files);
   check->callback([checking, &action] {
     action.run = [=, &action] {
       Verdict subject;

@@ -85,6 +85,7 @@ static Exit parse_and_run(int argc, char** argv) {
   if (!action.run) throw Failure(kExitUsage, "a subcommand is required (see --help)");
   if (const auto error = solver::check_arithmetic(solver::rounds_as_written()); !error.ok())
     throw Failure(kExitIncompatible, std::string(error.field) + " " + scenes::reason_of(error));
+  action.files.check();
   return action.run();
 }
 

@@ -27,13 +27,6 @@ std::vector<std::byte> read_file(const std::string& file) {
   return {begin, begin + text.size()};
 }
 
-void write_file(const std::string& file, const std::string& bytes) {
-  std::ofstream stream(file, std::ios::binary | std::ios::trunc);
-  stream.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  stream.close();
-  if (!stream) throw Failure(kExitIo, file + ": cannot be written");
-}
-
 scenes::Scene load_scene(const std::string& what, scenes::Untuned untuned) {
   scenes::Loaded loaded = scenes::load(what, untuned);
   if (loaded.scene) return std::move(*loaded.scene);

@@ -30,7 +30,6 @@ void print_json(Json object, Exit exit);
 
 /// The bytes of a file; a Failure with kExitIo naming it where it cannot be read.
 std::vector<std::byte> read_file(const std::string& file);
-void write_file(const std::string& file, const std::string& bytes);
 
 /// A catalogue scene or a scene file. A Failure names each mistake: kExitUsage where there is no
 /// such name, kExitCorrupt where the file is no scene.

@@ -4,6 +4,9 @@
 #include <cstdio>
 #include <iostream>
 
+#include "cli/files.hpp"
+#include "cli/whole_file.hpp"
+
 namespace cycloid::cli {
 namespace {
 
@@ -119,8 +122,11 @@ std::string test_case(const Report& report, const Verdict& verdict) {
          "</failure>\n    </testcase>\n";
 }
 
-void publish_files(const Report& report, const ReportOptions& options, bool json) {
+void print_github(const Report& report, const ReportOptions& options, bool json) {
   if (options.github) (json ? std::cerr : std::cout) << report_github(report) << std::flush;
+}
+
+void write_junit(const Report& report, const ReportOptions& options) {
   if (!options.junit.empty()) write_file(options.junit, report_junit(report));
 }
 
@@ -198,19 +204,27 @@ std::string report_github(const Report& report) {
          "::" + workflow(report.summary(), false) + "\n";
 }
 
-void add_report_options(CLI::App* command, ReportOptions& options) {
-  command->add_option("--junit", options.junit, "Write the verdicts to this file as JUnit XML");
+void add_report_options(CLI::App* command, ReportOptions& options, FileOptions& files) {
+  files.writes(command->add_option("--junit", options.junit,
+                                   "Write the verdicts to this file as JUnit XML"));
   command->add_flag("--github", options.github,
                     "Print the bad verdicts as annotations for GitHub Actions");
 }
 
+void refuse_report_on(const std::string& file, const std::string& option,
+                      const ReportOptions& options) {
+  if (options.junit.empty()) return;
+  if (kind_of(file).exists) refuse_same_file("--junit", options.junit, option, file);
+}
+
 Exit publish(const Report& report, const ReportOptions& options, bool json) {
+  write_junit(report, options);  // Before stdout has an object: a failure is one, too.
   if (json) {
     print_json(report_json(report), report.worst());
   } else {
     std::cout << report_text(report);
   }
-  publish_files(report, options, json);
+  print_github(report, options, json);
   return report.worst();
 }
 
@@ -218,6 +232,8 @@ Exit publish_failure(Verdict& subject, const std::string& suite, const ReportOpt
                      bool json, const std::function<Exit()>& work) {
   try {
     return work();
+  } catch (const WouldBeLost&) {
+    throw;
   } catch (const Failure& failure) {
     subject.exit = failure.exit;
     subject.text = failure.what();
@@ -226,9 +242,12 @@ Exit publish_failure(Verdict& subject, const std::string& suite, const ReportOpt
       const bool placed = subject.text.starts_with(place);
       subject.text.erase(0, (placed ? place : subject.name + ":").size() + 1);
     }
+    const Report report{suite, "run", {subject}};
+    print_github(report, options, json);
     try {
-      publish_files({suite, "run", {subject}}, options, json);
+      write_junit(report, options);
     } catch (const Failure& second) {
+      if (subject.text == second.what()) throw;  // That was the first failure.
       throw Failure(failure.exit, std::string(failure.what()) + "\n" + second.what());
     }
     throw;

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "cli/exit_codes.hpp"
+#include "cli/file_options.hpp"
 #include "cli/output.hpp"
 
 namespace cycloid::cli {
@@ -45,7 +46,12 @@ struct ReportOptions {
 };
 
 /// `--junit` and `--github`.
-void add_report_options(CLI::App* command, ReportOptions& options);
+void add_report_options(CLI::App* command, ReportOptions& options, FileOptions& files);
+
+/// WouldBeLost where the JUnit file would be what the report is on, a file that `option` has led
+/// to.
+void refuse_report_on(const std::string& file, const std::string& option,
+                      const ReportOptions& options);
 
 /// Prints what is asked for: a line per verdict and a summary, or one JSON object; the JUnit file;
 /// GitHub's commands, on stderr where stdout holds the object. A Failure where the file cannot be

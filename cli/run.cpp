@@ -1,4 +1,3 @@
-#include <fstream>
 #include <iostream>
 #include <memory>
 #include <optional>
@@ -9,6 +8,7 @@
 #include "cli/replaying.hpp"
 #include "cli/run_log.hpp"
 #include "cli/steady_time.hpp"
+#include "cli/whole_file.hpp"
 #include "solver/version.hpp"
 
 namespace cycloid::cli {
@@ -40,25 +40,21 @@ protocol::InputFrame scripted_frame(const scenes::Scene& scene, int seats, std::
 /// A row per body and tick, for plots. Positions in m, rotations as quaternions.
 class PoseTable {
  public:
-  explicit PoseTable(const std::string& file) : file_(file), stream_(file, std::ios::binary) {
-    stream_ << "tick,body,x,y,z,qx,qy,qz,qw\n";
+  explicit PoseTable(const std::string& file) : file_(file) {
+    file_.stream() << "tick,body,x,y,z,qx,qy,qz,qw\n";
   }
   void add(const scenes::Simulation& simulation) {
     for (const scenes::Pose& pose : simulation.poses()) {
-      stream_ << simulation.tick() << ',' << pose.index;
-      for (const float value : pose.position) stream_ << ',' << value;
-      for (const float value : pose.rotation) stream_ << ',' << value;
-      stream_ << '\n';
+      file_.stream() << simulation.tick() << ',' << pose.index;
+      for (const float value : pose.position) file_.stream() << ',' << value;
+      for (const float value : pose.rotation) file_.stream() << ',' << value;
+      file_.stream() << '\n';
     }
   }
-  void finish() {
-    stream_.flush();
-    if (!stream_) throw Failure(kExitIo, file_ + ": cannot be written");
-  }
+  void finish() { file_.finish(); }
 
  private:
-  std::string file_;
-  std::ofstream stream_;
+  WholeFile file_;
 };
 
 Exit run_scene(const RunOptions& options, bool json) {
@@ -81,6 +77,7 @@ Exit run_scene(const RunOptions& options, bool json) {
     inputs.clear();
     for (const protocol::SeatFrame& seat : frame.seats) inputs.push_back(seat.input);
     if (const solver::Error error = simulation.step(inputs); !error.ok()) {
+      if (poses) poses->finish();
       throw Failure(kExitDiverged, options.scene + ": the world does not step to tick " +
                                        std::to_string(tick) + ": " + error_text(error));
     }
@@ -112,7 +109,8 @@ void add_run(CLI::App& app, Action& action) {
   auto options = std::make_shared<RunOptions>();
   CLI::App* command = add_command(
       app, "run", "Step a scene headless with its scripted inputs; prints 'tick digest'", action);
-  command->add_option("SCENE", options->scene, "A catalogue name or a scene file")->required();
+  action.files.reads(
+      command->add_option("SCENE", options->scene, "A catalogue name or a scene file")->required());
   command->add_option("--ticks", options->ticks, "How many ticks")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
@@ -124,12 +122,14 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   add_lanes_option(command, options->lanes);
-  command->add_option("--log", options->log, "Write a log of the run to this file");
+  action.files.streams(
+      command->add_option("--log", options->log, "Write a log of the run to this file"));
   command
       ->add_option("--keyframe-every", options->keyframe_every,
                    "Ticks between two exact states in the log; 0: none")
       ->capture_default_str();
-  command->add_option("--poses", options->poses, "Write every body's pose at every tick as CSV");
+  action.files.writes(command->add_option("--poses", options->poses,
+                                          "Write every body's pose at every tick as CSV"));
   command->callback([options, &action] {
     action.run = [=, &action] { return run_scene(*options, action.json); };
   });

@@ -1,8 +1,10 @@
 #include "cli/run_log.hpp"
 
+#include <cerrno>
 #include <utility>
 
 #include "cli/output.hpp"
+#include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
 
@@ -12,10 +14,11 @@ OutputFile::OutputFile(std::string file)
 }
 
 void OutputFile::check() {
-  if (!stream_) throw Failure(kExitIo, file_ + ": cannot be written");
+  if (!stream_) throw Failure(kExitIo, unwritable_text(file_, errno));
 }
 
 void OutputFile::write(std::span<const std::byte> bytes) {
+  errno = 0;
   stream_.write(reinterpret_cast<const char*>(bytes.data()),
                 static_cast<std::streamsize>(bytes.size()));
   check();

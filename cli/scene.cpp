@@ -5,6 +5,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -112,9 +113,12 @@ void add_scene(CLI::App& app, Action& action) {
 
   auto options = std::make_shared<ExportOptions>();
   CLI::App* exporting = add_command(*scene, "export", "Write a scene as JSON or binary", action);
-  exporting->add_option("NAME", options->scene, "A catalogue name or a scene file")->required();
+  action.files.reads(
+      exporting->add_option("NAME", options->scene, "A catalogue name or a scene file")
+          ->required());
   exporting->add_flag("--binary", options->binary, "The binary form instead of JSON");
-  exporting->add_option("-o", options->file, "The file to write; stdout without it");
+  action.files.writes(
+      exporting->add_option("-o", options->file, "The file to write; stdout without it"));
   exporting->callback([options, &action] {
     action.run = [=, &action] { return export_scene(*options, action.json); };
   });

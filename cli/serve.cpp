@@ -175,9 +175,10 @@ Exit serve(ServeCommand command, bool json) {
   return exit;
 }
 
-void add_process(CLI::App& command, ServeCommand& serve) {
-  command.add_option("--config", serve.config,
-                     "Serve the rooms of this file (TOML; docs/server.md has its keys)");
+void add_process(CLI::App& command, ServeCommand& serve, FileOptions& files) {
+  files.reads(
+      command.add_option("--config", serve.config,
+                         "Serve the rooms of this file (TOML; docs/server.md has its keys)"));
   command.add_flag("--check-config", serve.check_config,
                    "Read the file, name every mistake, and serve nothing");
   command.add_option("--threads", serve.options.threads, "Threads of ticks and sockets")
@@ -219,7 +220,8 @@ void add_serve(CLI::App& app, Action& action) {
   CLI::App* serving = add_command(
       app, "serve", "Serve rooms; prints 'listening on ADDRESS:PORT' (with --json on stderr)",
       action);
-  serving->add_option("SCENE", command->scene, "A catalogue name or a scene file; or --config");
+  action.files.reads(serving->add_option("SCENE", command->scene,
+                                         "A catalogue name or a scene file; or --config"));
   serving->add_option("--address", options.address, "The address to listen on")
       ->capture_default_str();
   serving->add_option("--port", options.port, "The port; 0: any")->capture_default_str();
@@ -233,7 +235,8 @@ void add_serve(CLI::App& app, Action& action) {
                    "Threads of a step at most: one alone while that is faster; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
-  serving->add_option("--log", options.log, "Write the match to this file, which must be new");
+  action.files.streams(
+      serving->add_option("--log", options.log, "Write the match to this file, which must be new"));
   serving
       ->add_option("--log-sync", command->log_sync,
                    "When the log is on the disk: 100 ms later, before the tick leaves, or as the "
@@ -243,7 +246,7 @@ void add_serve(CLI::App& app, Action& action) {
           std::vector<std::string>(server::kLogSyncNames.begin(), server::kLogSyncNames.end())));
   serving->add_flag("--stop-on-log-error", options.stop_on_log_error,
                     "End the match when the log cannot be written");
-  add_process(*serving, *command);
+  add_process(*serving, *command, action.files);
   add_limits(*serving, options.limits);
   command->parsed = serving;
   serving->callback(

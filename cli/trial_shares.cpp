@@ -9,6 +9,7 @@
 #include "bench/trials/shares.hpp"
 #include "cli/output.hpp"
 #include "cli/side_by_side.hpp"
+#include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
 namespace {

@@ -12,6 +12,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/trial_shares.hpp"
+#include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -92,9 +93,7 @@ void write_table(const trials::ExpectedTable& table, trials::ExpectedTable writt
                  const std::string& file) {
   trials::ExpectedTable whole = table;
   whole.merge(written);
-  std::ofstream stream(file, std::ios::trunc);
-  stream << trials::expected_text(whole);
-  if (!stream.flush()) throw Failure(kExitIo, file + " cannot be written");
+  write_file(file, trials::expected_text(whole));
 }
 
 Json json_of(const trials::ExpectedTable& table) {
@@ -151,10 +150,10 @@ void add_trials(CLI::App& app, Action& action) {
       "Run the scenes in which methods fail, under every method; 1 if --check differs", action);
   command->add_option("NAME", options->names, "Which; none: all");
   command->add_option("--method", options->methods, "Only these methods");
-  command->add_option("--check", options->output.check,
-                      "Compare with this table of outcomes, or of shares");
-  command->add_option("--write", options->output.write,
-                      "Write the outcomes, or shares, into this table");
+  action.files.reads(command->add_option("--check", options->output.check,
+                                         "Compare with this table of outcomes, or of shares"));
+  action.files.writes(command->add_option("--write", options->output.write,
+                                          "Write the outcomes, or shares, into this table"));
   command->add_flag("--markdown", options->output.markdown,
                     "Print a table as in docs/stability.md");
   Sampling& sampling = options->sampling;

@@ -7,6 +7,7 @@
 #include "cli/files.hpp"
 #include "cli/output.hpp"
 #include "cli/tune_text.hpp"
+#include "cli/whole_file.hpp"
 #include "scenes/accuracy.hpp"
 
 namespace cycloid::cli {
@@ -64,6 +65,7 @@ std::string target_of(const TuneOptions& options) {
   if (!options.write) return options.file;
   if (!kind_of(options.scene).is_file)
     throw Failure(kExitUsage, "--write: '" + options.scene + "' is no file; say -o FILE");
+  check_output(options.scene);
   return options.scene;
 }
 
@@ -77,8 +79,7 @@ bool is_json(const std::string& file) {
   return false;
 }
 
-/// The scene with what was asked for and chosen, in the form it came in. What was in the file stays
-/// there until all of the new one is written.
+/// The scene with what was asked for and chosen, in the form it came in.
 void write_choice(const TuneOptions& options, scenes::Scene scene, const TuneReport& report,
                   const std::string& file) {
   const solver::Tuning& tuning = report.best().tuning;
@@ -95,9 +96,7 @@ void write_choice(const TuneOptions& options, scenes::Scene scene, const TuneRep
     const std::vector<std::byte> binary = scenes::to_binary(scene);
     bytes.assign(reinterpret_cast<const char*>(binary.data()), binary.size());
   }
-  const std::string beside = file + ".new";
-  write_file(beside, bytes);
-  if (!replace_file(beside, file)) throw Failure(kExitIo, file + ": cannot be written");
+  write_file(file, bytes);
 }
 
 Exit tune(const TuneOptions& options, bool json) {
@@ -126,8 +125,9 @@ Exit tune(const TuneOptions& options, bool json) {
   return exit;
 }
 
-void add_options(CLI::App* command, TuneOptions& options) {
-  command->add_option("SCENE", options.scene, "A catalogue name or a scene file")->required();
+void add_options(CLI::App* command, TuneOptions& options, FileOptions& files) {
+  files.reads(
+      command->add_option("SCENE", options.scene, "A catalogue name or a scene file")->required());
   command->add_option("--error", options.error,
                       "How far shapes may overlap and joints gape (95th percentile of the last "
                       "second): 1mm, 0.5cm, 0.002m, or 1% of a typical body's size; without it "
@@ -144,8 +144,9 @@ void add_options(CLI::App* command, TuneOptions& options) {
       ->delimiter(',');
   CLI::Option* write =
       command->add_flag("--write", options.write, "Store the choice in the scene's file");
-  command->add_option("-o", options.file, "Write the scene with the choice to this file")
-      ->excludes(write);
+  files.writes(
+      command->add_option("-o", options.file, "Write the scene with the choice to this file")
+          ->excludes(write));
   command->add_flag("--no-needs", options.no_needs, "Do not look for what the scene does not need");
   command->add_flag("--progress", options.progress, "A line on stderr for every setting");
 }
@@ -156,7 +157,7 @@ void add_tune(CLI::App& app, Action& action) {
   auto options = std::make_shared<TuneOptions>();
   CLI::App* command = add_command(
       app, "tune", "Choose the cheapest setting that meets an accuracy, and show why", action);
-  add_options(command, *options);
+  add_options(command, *options, action.files);
   command->callback(
       [options, &action] { action.run = [=, &action] { return tune(*options, action.json); }; });
 }

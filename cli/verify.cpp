@@ -121,7 +121,9 @@ Verdict verdict_on(const std::string& file, const Verifying& how) {
 
 Exit verify_logs(const VerifyOptions& options, bool json) {
   using Clock = std::chrono::steady_clock;
-  const std::vector<std::string> files = part_of(logs_of(options.paths), options.shard);
+  const std::vector<std::string> logs = logs_of(options.paths);
+  for (const std::string& log : logs) refuse_report_on(log, "LOG", options.report);
+  const std::vector<std::string> files = part_of(logs, options.shard);
   const std::size_t jobs_each =
       static_cast<std::size_t>(options.jobs) / std::max<std::size_t>(files.size(), 1);
   Verifying how{options, {}, std::max(static_cast<int>(jobs_each), 1)};
@@ -142,7 +144,9 @@ void add_verify(CLI::App& app, Action& action) {
   CLI::App* command =
       add_command(app, "verify",
                   "Replay logs and say of each whether it is good; exits with the worst", action);
-  command->add_option("LOG", options->paths, "Logs, or folders to search for *.cylog")->required();
+  action.files.reads(
+      command->add_option("LOG", options->paths, "Logs, or folders to search for *.cylog")
+          ->required());
   command->add_flag("--allow-open", options->allow_open,
                     "A log without its end, such as of a killed server, is good");
   add_salvage_option(command, options->loading);
@@ -160,7 +164,7 @@ void add_verify(CLI::App& app, Action& action) {
                    "Threads: logs side by side, and of fewer logs their parts between keyframes")
       ->capture_default_str()
       ->check(CLI::Range(1, 256));
-  add_report_options(command, options->report);
+  add_report_options(command, options->report, action.files);
   command->callback([options, &action] {
     action.run = [=, &action] {
       Verdict subject;
