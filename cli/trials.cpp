@@ -133,6 +133,8 @@ Exit run_single(const std::vector<scenes::Trial>& chosen,
 }
 
 Exit run_trials(const TrialsOptions& options, bool json) {
+  if (json && options.output.markdown)
+    throw Failure(kExitUsage, "--json and --markdown: one of them, not both");
   TrialsOutput output = options.output;
   output.json = json;
   const std::vector<scenes::Trial> chosen = chosen_trials(options);

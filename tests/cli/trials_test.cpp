@@ -52,6 +52,12 @@ TEST(Trials, ShowATableOfTheMethodsThatRan) {
   EXPECT_THAT(ran.out, HasSubstr("| 1 | heavy-on-light-10 | sunk, m | **"));
 }
 
+TEST(Trials, PrintATableOrAnObject) {
+  const Ran ran = run_program({"trials", "heavy-on-light-10", "--json", "--markdown"});
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_THAT(ran.json()["error"].get<std::string>(), HasSubstr("--json and --markdown"));
+}
+
 TEST(PerturbedTrials, ShowATableOfTheMethodsThatRan) {
   const Ran ran = perturb({"--markdown"});
   ASSERT_EQ(ran.exit, 0) << ran.err;
