@@ -10,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
+#include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -147,7 +148,9 @@ std::vector<std::string> write_chart(const accuracy::ChartPlan& plan, const Char
                                      figures::date_text()};
   const auto errors = chosen_errors(options);
   try {
-    return write_chart_files(plan, errors, options.out, origin);
+    return write_chart_files(plan, errors, options.out, origin, write_file);
+  } catch (const Failure&) {
+    throw;
   } catch (const std::runtime_error& error) {
     throw Failure(kExitIo, error.what());
   }

@@ -1,18 +1,24 @@
 #pragma once
 
+#include <functional>
 #include <string>
 
 #include "bench/accuracy/chart_csv.hpp"
 
 namespace cycloid::accuracy {
 
+/// Writes a text to a file, or throws.
+using TextWriter = std::function<void(const std::string& file, const std::string& text)>;
+void write_chart_text(const std::string& file, const std::string& text);
+
 /// Draws the plan's scenes and writes them to a folder that is there: chart.csv, chart.html,
 /// fronts.md and SCENE-ERROR.svg for each scene and error; letters, digits, '-' and '_' of a
-/// scene's name are kept. Throws std::runtime_error that names the file where one cannot be
-/// written, or gnuplot is missing.
+/// scene's name are kept, as far as there is room. Throws std::runtime_error that names the file
+/// where one cannot be written, or gnuplot is missing.
 /// @returns the names of the files.
 std::vector<std::string> write_chart_files(const ChartPlan& plan,
                                            const std::vector<const ErrorKind*>& errors,
-                                           const std::string& folder, const ChartOrigin& origin);
+                                           const std::string& folder, const ChartOrigin& origin,
+                                           const TextWriter& write = write_chart_text);
 
 }  // namespace cycloid::accuracy

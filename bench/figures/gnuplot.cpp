@@ -65,7 +65,11 @@ std::string draw(const experiments::Figure& figure, const std::string& folder) {
   std::filesystem::create_directories(folder, error);
   if (error) return folder + ": cannot be made: " + error.message();
   const std::string file = (std::filesystem::path(folder) / (figure.name + ".svg")).string();
-  return run_gnuplot(gnuplot_script(figure, file), file);
+  const std::string drawing = file + ".drawing";
+  if (const std::string why = run_gnuplot(gnuplot_script(figure, drawing), drawing); !why.empty())
+    return why;
+  std::filesystem::rename(drawing, file, error);
+  return error ? file + ": cannot be written: " + error.message() : "";
 }
 
 }  // namespace cycloid::figures

@@ -86,6 +86,23 @@ TEST(ChartCommand, NamesOfScenesAreTextAlone) {
   EXPECT_THAT(read_text(folder.file("out/fronts.md")), HasSubstr("' <b>\\| |"));
 }
 
+TEST(ChartCommand, DrawsScenesOfNearlyOneNameIntoFilesOfTheirOwn) {
+  const Folder folder;
+  nlohmann::json scene = nlohmann::json::parse(run_program({"scene", "export", "stack-10"}).out);
+  for (const char* name : {" ", "."}) {
+    scene["name"] = std::string(300, 'x').replace(1, 1, name);
+    write_text(folder.file(std::string("of") + name + "json"), scene.dump());
+  }
+  const Ran ran =
+      run_program({"chart", folder.file("of json"), folder.file("of.json"), "--out",
+                   folder.file("out"), "--methods", "pgs", "--substeps", "1", "--sweeps", "1",
+                   "--error", "worst", "--ticks", "5", "--repeats", "0"});
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  const std::string stem = folder.file("out/") + std::string(100, 'x').replace(1, 1, "-");
+  EXPECT_TRUE(std::filesystem::exists(stem + "-worst.svg"));
+  EXPECT_TRUE(std::filesystem::exists(stem + "-2-worst.svg"));
+}
+
 TEST(ChartCommand, RefusesBadValuesAndNamesTheOption) {
   const Folder folder;
   struct Case {
