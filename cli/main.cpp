@@ -11,6 +11,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/log_file.hpp"
+#include "cli/numbers.hpp"
 #include "cli/output.hpp"
 #include "scenes/reasons.hpp"
 #include "solver/floating_point_mode.hpp"
@@ -74,6 +75,7 @@ static Exit parse_and_run(int argc, char** argv) {
   add_chart(app, action);
   add_tune(app, action);
 #endif
+  check_numbers(app);
   try {
     app.parse(argc, argv);
   } catch (const CLI::Success& help) {

@@ -167,9 +167,6 @@ void add_trials(CLI::App& app, Action& action) {
           ->check(CLI::Range(1, 100'000));
   command->add_option("--seed", sampling.seed, "Of the changes of --perturb")
       ->capture_default_str()
-      ->check([](const std::string& word) {  // Else it would wrap around.
-        return std::string(word.starts_with('-') ? "a seed is a whole number from 0" : "");
-      })
       ->needs(perturb);
   command->add_option("--jobs", sampling.jobs, "Runs of --perturb side by side")
       ->capture_default_str()

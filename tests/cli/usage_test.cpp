@@ -36,6 +36,46 @@ TEST(Usage, BadCommandLinesExitWithTwoAndNameTheWord) {
   }
 }
 
+TEST(Usage, NumbersThatAnOptionCannotHoldAreRefused) {
+  struct Case {
+    std::vector<std::string> arguments;
+    std::string words;
+  };
+  const std::vector<Case> cases = {
+      {{"run", "half-pipe", "--ticks", "-1"}, "--ticks: '-1' is no whole number"},
+      {{"run", "half-pipe", "--ticks", "0"}, "--ticks: '0' is not above 0"},
+      {{"run", "half-pipe", "--ticks", "99999999999999999999"}, "is too large"},
+      {{"run", "half-pipe", "--ticks", "1.5"}, "--ticks: '1.5' is no whole number"},
+      {{"run", "half-pipe", "--digest-every", "-1"}, "--digest-every: '-1' is"},
+      {{"run", "half-pipe", "--keyframe-every", " -1"}, "--keyframe-every: ' -1' is"},
+      {{"run", "half-pipe", "--workers", "99"}, "--workers: Value 99 not in range 1 to 64"},
+      {{"diff", "half-pipe", "half-pipe", "--ticks", "-1"}, "--ticks: '-1' is"},
+      {{"trace", "half-pipe", "--tick", "-1"}, "--tick: '-1' is"},
+      {{"cut", "a.cylog", "-o", "b.cylog", "--from", "-1"}, "--from: '-1' is"},
+      {{"golden", "make", "half-pipe", "--at", "1,-2"}, "--at: '-2' is"},
+      {{"verify", "a.cylog", "--timeout", "nan"}, "--timeout: 'nan' is no number"},
+      {{"verify", "a.cylog", "--timeout", "-1"}, "--timeout: '-1' is not above 0"},
+      {{"verify", "a.cylog", "--timeout", "inf"}, "--timeout: 'inf' is no number"},
+#ifdef CYCLOID_NETWORK
+      {{"serve", "half-pipe", "--tick-rate", "nan"}, "--tick-rate: 'nan' is no number"},
+      {{"serve", "half-pipe", "--drain", "nan"}, "--drain: 'nan' is no number"},
+      {{"demo", "half-pipe", "--seconds", "nan"}, "--seconds: 'nan' is no number"},
+      {{"sim", "--seed", "-1"}, "--seed: '-1' is"},
+#endif
+#ifdef CYCLOID_EXPERIMENTS
+      {{"tune", "stack-10", "--budget-us", "nan"}, "--budget-us: 'nan' is no number"},
+      {{"chart", "stack-10", "--out", "x", "--moved-max", "nan"}, "--moved-max: 'nan' is"},
+      {{"chart", "stack-10", "--out", "x", "--moved-max", "-2"}, "--moved-max: '-2' is below 0"},
+#endif
+  };
+  for (const Case& wrong : cases) {
+    const Ran ran = run_program(wrong.arguments);
+    EXPECT_EQ(ran.exit, 2) << wrong.words;
+    EXPECT_THAT(ran.err, HasSubstr(wrong.words));
+    EXPECT_EQ(ran.out, "") << wrong.words;
+  }
+}
+
 TEST(Usage, HelpNamesTheExitCodes) {
   const std::vector<std::vector<std::string>> commands = {{},
                                                           {"run"},
