@@ -10,6 +10,7 @@
 #include "cli/commands.hpp"
 #include "cli/files.hpp"
 #include "cli/output.hpp"
+#include "cli/visible.hpp"
 #include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
@@ -116,7 +117,7 @@ class ProgressBar {
     std::string line = "\r[" + std::string(static_cast<std::size_t>(full), '#') +
                        std::string(static_cast<std::size_t>(kWidth - full), '.') + "] " +
                        std::to_string(static_cast<int>(100.0 * progress.done)) + " %" +
-                       left(progress.done) + ' ' + progress.what;
+                       left(progress.done) + ' ' + visible(progress.what);
     line.resize(100, ' ');
     std::cerr << line << std::flush;
   }
@@ -185,7 +186,7 @@ Exit run_chart_command(const ChartOptions& options, bool json) {
     return kExitGood;
   }
   for (const accuracy::SceneChart& chart : plan.scenes) {
-    std::cout << chart.name << ": " << chart.points.size() << " settings; the front of "
+    std::cout << visible(chart.name) << ": " << chart.points.size() << " settings; the front of "
               << errors.front()->name << " over rows:\n";
     for (const std::size_t index :
          pareto_front(chart, *errors.front(), accuracy::CostAxis::kRows)) {

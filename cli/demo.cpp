@@ -12,6 +12,7 @@
 #include "cli/output.hpp"
 #include "cli/replaying.hpp"
 #include "cli/signals.hpp"
+#include "cli/visible.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -59,7 +60,8 @@ class Demo {
     const Exit exit = result_.failures.empty() ? kExitGood : exit_of_failure();
     if (json) print_json(to_json(result_), exit);
     if (!json) print_table(result_);
-    for (const std::string& failure : result_.failures) std::cerr << "cycloid: " << failure << '\n';
+    for (const std::string& failure : result_.failures)
+      std::cerr << "cycloid: " << visible_lines(failure) << '\n';
     return exit;
   }
 
@@ -98,7 +100,8 @@ class Demo {
     }
     const std::size_t begin = server.err().find(words) + words.size();
     address_ = server.err().substr(begin, server.err().find('\n', begin) - begin);
-    if (options_.forever) std::cerr << "serving " << result_.scene << " on " << address_ << '\n';
+    if (options_.forever)
+      std::cerr << "serving " << visible(result_.scene) << " on " << address_ << '\n';
     return true;
   }
 

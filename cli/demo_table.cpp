@@ -3,6 +3,8 @@
 #include <iomanip>
 #include <iostream>
 
+#include "cli/visible.hpp"
+
 namespace cycloid::cli {
 namespace {
 
@@ -28,7 +30,7 @@ void judge(DemoResult& result) {
 }
 
 void print_table(const DemoResult& result) {
-  std::cout << result.scene << ": " << result.ticks << " ticks\n\n"
+  std::cout << visible(result.scene) << ": " << result.ticks << " ticks\n\n"
             << std::left << std::setw(10) << "part" << std::setw(20) << "role" << std::right
             << std::setw(8) << "tick"
             << "  " << std::left << std::setw(18) << "final digest" << std::right << std::setw(12)

@@ -8,6 +8,7 @@
 #include "cli/log_file.hpp"
 #include "cli/output.hpp"
 #include "cli/replaying.hpp"
+#include "cli/visible.hpp"
 #include "server/desync/report.hpp"
 
 namespace cycloid::cli {
@@ -34,7 +35,7 @@ Exit show(const std::string& file, bool json) {
   if (json)
     print_json(std::move(report), kExitGood);
   else
-    std::cout << shown;
+    std::cout << visible_lines(shown);
   return kExitGood;
 }
 

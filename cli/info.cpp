@@ -86,8 +86,7 @@ Exit print_info(const InfoOptions& options, bool json) {
   object["keyframes"] = loaded.log.keyframes.size();
   for (const auto& [name, value] : object.items()) {
     if (value.is_null() || value == "") continue;
-    std::cout << name << ' ' << (value.is_string() ? value.get<std::string>() : value.dump())
-              << '\n';
+    print_member(name, value);
   }
   return exit;
 }

@@ -9,6 +9,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/signals.hpp"
+#include "cli/visible.hpp"
 #include "client/net/tls.hpp"
 #include "client/token_text.hpp"
 #include "solver/version.hpp"
@@ -176,14 +177,13 @@ Exit join(const JoinCommand& command, bool json) {
   const Json object = to_json(report);
   if (exit != kExitGood && exit != kExitDiverged) {
     std::cerr << "cycloid: " << command.server << ": " << client::end_name(report.end) << ": "
-              << report.reason << '\n';
+              << visible(report.reason) << '\n';
   }
   if (json) print_json(object, exit);
   if (json) return exit;
   for (const auto& [name, value] : object.items()) {
     if (!value.is_null()) {
-      std::cout << name << ' ' << (value.is_string() ? value.get<std::string>() : value.dump())
-                << '\n';
+      print_member(name, value);
     }
   }
   return exit;

@@ -13,6 +13,7 @@
 #include "cli/log_file.hpp"
 #include "cli/numbers.hpp"
 #include "cli/output.hpp"
+#include "cli/visible.hpp"
 #include "scenes/reasons.hpp"
 #include "solver/floating_point_mode.hpp"
 
@@ -92,7 +93,7 @@ static Exit parse_and_run(int argc, char** argv) {
 }
 
 static Exit report_failure(Exit exit, const std::string& what, bool json) {
-  std::cerr << "cycloid: " << what << '\n';
+  std::cerr << "cycloid: " << visible_lines(what) << '\n';
   if (json) print_json({{"error", what}}, exit);
   return exit;
 }

@@ -1,12 +1,14 @@
 #include "cli/output.hpp"
 
-#include <cstdio>
+#include <cerrno>
 #include <fstream>
 #include <iostream>
 #include <iterator>
+#include <system_error>
 #include <utility>
 
 #include "cli/files.hpp"
+#include "cli/visible.hpp"
 
 namespace cycloid::cli {
 
@@ -16,10 +18,20 @@ void print_json(Json object, Exit exit) {
   std::cout << object.dump(-1, ' ', false, Json::error_handler_t::replace) << '\n';
 }
 
+void print_member(const std::string& name, const Json& value) {
+  std::cout << name << ' '
+            << (value.is_string() ? visible(value.get_ref<const std::string&>()) : value.dump())
+            << '\n';
+}
+
 std::vector<std::byte> read_file(const std::string& file) {
   if (kind_of(file).is_folder) throw Failure(kExitIo, file + ": is a directory");
+  errno = 0;
   std::ifstream stream(file, std::ios::binary);
-  if (!stream) throw Failure(kExitIo, file + ": cannot be opened");
+  if (!stream) {
+    const std::string why = errno == 0 ? "" : ": " + std::generic_category().message(errno);
+    throw Failure(kExitIo, file + ": cannot be opened" + why);
+  }
   const std::string text((std::istreambuf_iterator<char>(stream)),
                          std::istreambuf_iterator<char>());
   if (stream.bad()) throw Failure(kExitIo, file + ": cannot be read");
@@ -39,7 +51,8 @@ std::string mistakes_text(const std::string& file, const std::vector<scenes::Mis
   std::string text;
   for (const scenes::Mistake& mistake : mistakes) {
     if (!text.empty()) text += '\n';
-    text += file + ": " + (mistake.path.empty() ? "" : mistake.path + ": ") + mistake.reason;
+    text += visible(file) + ": " + (mistake.path.empty() ? "" : visible(mistake.path) + ": ") +
+            visible(mistake.reason);
   }
   return text;
 }

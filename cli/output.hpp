@@ -28,6 +28,9 @@ using protocol::hex16;
 /// `object` with the exit code as its last member, on one line of stdout.
 void print_json(Json object, Exit exit);
 
+/// "name value" on a line of stdout.
+void print_member(const std::string& name, const Json& value);
+
 /// The bytes of a file; a Failure with kExitIo naming it where it cannot be read.
 std::vector<std::byte> read_file(const std::string& file);
 

@@ -4,6 +4,7 @@
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
 #include "cli/replaying.hpp"
+#include "cli/visible.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -61,7 +62,8 @@ Exit replay_log(const ReplayCommand& options, bool json) {
     if (replayed.divergence) object["diverged_at"] = replayed.divergence->tick;
     print_json(std::move(object), exit);
   } else if (!replayed.divergence) {
-    std::cout << "replayed " << replayed.ticks << " ticks of " << loaded.log.header.scene_name;
+    std::cout << "replayed " << replayed.ticks << " ticks of "
+              << visible(loaded.log.header.scene_name);
     if (replayed.from != 0) std::cout << " from the state after tick " << replayed.from;
     std::cout << ", all digests equal, last " << hex16(replayed.digest) << '\n';
   }

@@ -5,6 +5,7 @@
 #include <iostream>
 
 #include "cli/files.hpp"
+#include "cli/visible.hpp"
 #include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
@@ -30,33 +31,6 @@ const char* exit_name(Exit exit) {
   return "unknown";
 }
 
-/// The length of the UTF-8 character that begins at `at`, or 0 where none does that XML may hold.
-std::size_t character_bytes(std::string_view text, std::size_t at) {
-  const auto byte = [&](std::size_t i) { return static_cast<unsigned char>(text[at + i]); };
-  const unsigned lead = byte(0);
-  if (lead < 0x80) {
-    const bool held = lead >= 0x20 || lead == '\t' || lead == '\n' || lead == '\r';
-    return held && lead != 0x7f ? 1 : 0;
-  }
-  const std::size_t size = lead < 0xc2   ? 0
-                           : lead < 0xe0 ? 2
-                           : lead < 0xf0 ? 3
-                           : lead < 0xf5 ? 4
-                                         : 0;
-  if (size == 0 || text.size() - at < size) return 0;
-  std::uint32_t code = lead & (0xffu >> (size + 1));
-  for (std::size_t i = 1; i < size; ++i) {
-    if ((byte(i) & 0xc0) != 0x80) return 0;
-    code = code << 6 | (byte(i) & 0x3f);
-  }
-  const bool overlong = (size == 3 && code < 0x800) || (size == 4 && code < 0x10000);
-  const bool surrogate = code >= 0xd800 && code <= 0xdfff;
-  const bool control = code < 0xa0;  // Allowed, and bad to read.
-  return overlong || surrogate || control || code == 0xfffe || code == 0xffff || code > 0x10ffff
-             ? 0
-             : size;
-}
-
 /// For text and for values in double quotes, where an unescaped line end would become a space.
 std::string xml(std::string_view text) {
   std::string out;
@@ -64,8 +38,7 @@ std::string xml(std::string_view text) {
     const char c = text[at];
     const std::size_t size = character_bytes(text, at);
     if (size == 0) {
-      const auto byte = static_cast<unsigned char>(c);
-      out += {'\\', 'x', "0123456789abcdef"[byte >> 4], "0123456789abcdef"[byte & 15]};
+      out += escaped_byte(c);
     } else if (c == '&' || c == '<' || c == '>' || c == '"' || c == '\'' ||
                (size == 1 && c < ' ')) {
       out += "&#" + std::to_string(static_cast<int>(c)) + ";";
@@ -166,7 +139,8 @@ std::string Report::summary() const {
 std::string report_text(const Report& report) {
   std::string text;
   for (const Verdict& verdict : report.verdicts)
-    text += verdict.name + ": " + verdict.text + ", " + std::to_string(verdict.ticks) + " ticks\n";
+    text += visible(verdict.name) + ": " + visible_lines(verdict.text) + ", " +
+            std::to_string(verdict.ticks) + " ticks\n";
   return text + report.summary() + "\n";
 }
 

@@ -5,6 +5,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/visible.hpp"
 #include "cli/whole_file.hpp"
 
 namespace cycloid::cli {
@@ -42,7 +43,7 @@ Exit check_file(const std::string& file, bool json, Json& results) {
   if (const std::string reason = unreadable(file); !reason.empty()) {
     exit = kExitIo;
     mistakes.push_back({{"path", ""}, {"reason", reason}});
-    std::cerr << "cycloid: " << reason << '\n';
+    std::cerr << "cycloid: " << visible(reason) << '\n';
   } else if (const scenes::Loaded loaded = scenes::load_file(file); !loaded.scene) {
     exit = kExitCorrupt;
     for (const scenes::Mistake& mistake : loaded.mistakes) {
@@ -50,7 +51,7 @@ Exit check_file(const std::string& file, bool json, Json& results) {
       if (!json) std::cout << mistakes_text(file, {mistake}) << '\n';
     }
   } else if (!json) {
-    std::cout << file << ": good\n";
+    std::cout << visible(file) << ": good\n";
   }
   results.push_back({{"file", file}, {"good", exit == kExitGood}, {"mistakes", mistakes}});
   return exit;

@@ -8,6 +8,7 @@
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
+#include "cli/visible.hpp"
 #include "server/config/run.hpp"
 
 namespace cycloid::cli {
@@ -162,15 +163,15 @@ Exit serve(ServeCommand command, bool json) {
   const Exit exit = exit_of(report);
   if (exit != kExitGood) {
     std::cerr << "cycloid: " << server::end_name(report.end) << ": "
-              << (report.durable ? report.reason : "the log is not durable: " + report.reason)
+              << visible(report.durable ? report.reason
+                                        : "the log is not durable: " + report.reason)
               << '\n';
   }
   const Json object = to_json(report);
   if (json) print_json(object, exit);
   if (json) return exit;
   for (const auto& [name, value] : object.items()) {
-    std::cout << name << ' ' << (value.is_string() ? value.get<std::string>() : value.dump())
-              << '\n';
+    print_member(name, value);
   }
   return exit;
 }

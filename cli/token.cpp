@@ -89,8 +89,7 @@ PublicKey read_public_key(const std::string& file) {
 
 void print_text(const Json& object) {
   for (const auto& [name, value] : object.items()) {
-    std::cout << name << ' ' << (value.is_string() ? value.get<std::string>() : value.dump())
-              << '\n';
+    print_member(name, value);
   }
 }
 

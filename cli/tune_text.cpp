@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "bench/accuracy/settings.hpp"
+#include "cli/visible.hpp"
 #include "solver/version.hpp"
 
 namespace cycloid::cli {
@@ -105,7 +106,7 @@ std::string unmet_text(const TuneReport& report) {
 
 void print_tune(const TuneReport& report) {
   const tuning::TuneResult& result = report.result;
-  std::cout << report.scene << ": error " << tuning::text_of(report.asked);
+  std::cout << visible(report.scene) << ": error " << tuning::text_of(report.asked);
   if (report.asked.percent > 0.0) std::cout << " = " << length_text(report.request.error_m);
   std::cout << ", " << report.request.ticks << " ticks";
   if (result.finest.known)
