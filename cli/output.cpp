@@ -9,6 +9,7 @@
 
 #include "cli/files.hpp"
 #include "cli/visible.hpp"
+#include "scenes/golden.hpp"
 
 namespace cycloid::cli {
 
@@ -42,7 +43,7 @@ std::vector<std::byte> read_file(const std::string& file) {
 scenes::Scene load_scene(const std::string& what, scenes::Untuned untuned) {
   scenes::Loaded loaded = scenes::load(what, untuned);
   if (loaded.scene) return std::move(*loaded.scene);
-  const bool is_file = kind_of(what).exists;
+  const bool is_file = kind_of(what).exists || scenes::is_path(what);
   if (is_file) read_file(what);  // Says so where it cannot be read.
   throw Failure(is_file ? kExitCorrupt : kExitUsage, mistakes_text(what, loaded.mistakes));
 }

@@ -35,7 +35,7 @@ void print_member(const std::string& name, const Json& value);
 std::vector<std::byte> read_file(const std::string& file);
 
 /// A catalogue scene or a scene file. A Failure names each mistake: kExitUsage where there is no
-/// such name, kExitCorrupt where the file is no scene.
+/// such name, kExitIo where there is no such file, kExitCorrupt where the file is no scene.
 scenes::Scene load_scene(const std::string& what,
                          scenes::Untuned untuned = scenes::Untuned::kRefused);
 

@@ -100,6 +100,7 @@ Exit serve_config(const ServeCommand& command, bool json) {
   }
   server::ConfigResult read = server::read_config_file(command.config, load_for_config);
   if (!read.config) {
+    (void)read_file(command.config);  // Says so where it cannot be read.
     throw Failure(kExitUsage, server::config_mistakes_text(command.config, read.mistakes));
   }
   if (command.check_config) {

@@ -158,6 +158,20 @@ TEST(SceneCommand, CheckOfAFileThatIsNotThereExitsWithFive) {
   EXPECT_THAT(ran.err, HasSubstr("/nowhere/scene.json"));
 }
 
+TEST(SceneCommand, WhatIsPlainlyAPathIsNoNameOfTheCatalogue) {
+  for (const char* path : {"/nowhere/half-pipe", "no-such.json", "no-such.cyscene"}) {
+    const Ran ran = run_program({"run", path, "--ticks", "1"});
+    EXPECT_EQ(ran.exit, 5) << path;
+    EXPECT_EQ(ran.err,
+              std::string("cycloid: ") + path + ": cannot be opened: No such file or directory\n");
+  }
+#ifdef CYCLOID_NETWORK
+  const Ran ran = run_program({"serve", "--config", "/nowhere/server.toml"});
+  EXPECT_EQ(ran.exit, 5);
+  EXPECT_THAT(ran.err, HasSubstr("/nowhere/server.toml: cannot be opened"));
+#endif
+}
+
 TEST(SceneCommand, RunOfABadFileExitsWithThree) {
   const Folder folder;
   write_text(folder.file("bad.json"), "{\"bodies\": 7}");
