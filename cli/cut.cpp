@@ -28,6 +28,11 @@ CutBounds bounds_of(const CutOptions& options, const LoadedLog& loaded) {
   const std::uint64_t first = loaded.first_tick() - 1;
   const std::uint64_t last = loaded.last_tick();
   const CutBounds bounds{options.from.value_or(first), options.to == 0 ? last : options.to};
+  if (options.from && options.to == 0 && bounds.from == last) {
+    throw Failure(kExitUsage, "--from " + std::to_string(last) + ": " + options.log +
+                                  " has no tick behind it; --to " + std::to_string(last) +
+                                  " takes the state alone");
+  }
   if (first <= bounds.from && bounds.from <= bounds.to && bounds.to <= last) return bounds;
   throw Failure(kExitUsage, "--from " + std::to_string(bounds.from) + " --to " +
                                 std::to_string(bounds.to) + ": " + options.log +

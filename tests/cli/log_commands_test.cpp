@@ -93,6 +93,9 @@ TEST_F(LogCommand, ACutIsALogOfItsOwn) {
     EXPECT_EQ(summary_of(again).header.branch_tick, from);
   }
   EXPECT_EQ(run_program({"cut", log_, "--from", "9", "--to", "8", "-o", cut}).exit, 2);
+  const Ran nothing = run_program({"cut", log_, "--from", "120", "-o", cut});
+  EXPECT_EQ(nothing.exit, 2);
+  EXPECT_THAT(nothing.err, HasSubstr("--from 120: " + log_ + " has no tick behind it"));
   EXPECT_EQ(run_program({"cut", log_, "--to", "121", "-o", cut}).exit, 2);
 }
 
