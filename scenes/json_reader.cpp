@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -167,19 +168,55 @@ class ParseGuard {
       too_deep_ = true;
       return false;
     }
-    if (event == Json::parse_event_t::object_start) keys_.emplace_back();
-    if (event == Json::parse_event_t::object_end) keys_.pop_back();
-    if (event == Json::parse_event_t::key) {
-      const std::string key = parsed.get<std::string>();
-      if (!keys_.back().insert(key).second && mistakes_.size() < kMistakesMax)
-        mistakes_.push_back({"/" + key, "is given twice in one object"});
+    switch (event) {
+      case Json::parse_event_t::object_start:
+      case Json::parse_event_t::array_start:
+        levels_.push_back({event == Json::parse_event_t::array_start, 0, "", {}});
+        break;
+      case Json::parse_event_t::object_end:
+      case Json::parse_event_t::array_end:
+        levels_.pop_back();
+        go_on();
+        break;
+      case Json::parse_event_t::key:
+        take_key(parsed.get<std::string>());
+        break;
+      case Json::parse_event_t::value:
+        go_on();
+        break;
     }
     return true;
   }
 
+  /// Of what is being read.
+  std::string path() const {
+    std::string path;
+    for (const Level& level : levels_)
+      path += "/" + (level.is_array ? std::to_string(level.index) : level.key);
+    return path;
+  }
+
  private:
+  /// An array or object that is not at its end.
+  struct Level {
+    bool is_array = false;
+    std::size_t index = 0;
+    std::string key;
+    std::set<std::string> keys;
+  };
+
+  void take_key(const std::string& key) {
+    levels_.back().key = key;
+    if (!levels_.back().keys.insert(key).second && mistakes_.size() < kMistakesMax)
+      mistakes_.push_back({path(), "is given twice in one object"});
+  }
+
+  void go_on() {
+    if (!levels_.empty()) ++levels_.back().index;
+  }
+
   std::vector<Mistake>& mistakes_;
-  std::vector<std::set<std::string>> keys_;
+  std::vector<Level> levels_;
   bool too_deep_ = false;
 };
 
@@ -190,8 +227,12 @@ Loaded from_json(std::string_view text, Untuned untuned) {
     return loaded;
   }
   Json json;
+  ParseGuard guard(loaded.mistakes);
   try {
-    json = Json::parse(text, ParseGuard(loaded.mistakes));
+    json = Json::parse(text, std::ref(guard));
+  } catch (const Json::out_of_range&) {
+    loaded.mistakes.push_back({guard.path(), "is out of range"});
+    return loaded;
   } catch (const Json::exception& error) {
     // The library's sentence holds line and column; its "[json.exception...]" tag says nothing.
     const std::string what = error.what();
