@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 #include <set>
 
+#include "scenes/accuracy.hpp"
 #include "scenes/catalogue.hpp"
 #include "scenes/fields.hpp"
 #include "scenes/zero_signs.hpp"
@@ -244,6 +245,8 @@ Loaded from_json(std::string_view text, Untuned untuned) {
   Scene scene;
   JsonReader reader(json, "", loaded.mistakes);
   reader.read_part(scene);
+  if (loaded.mistakes.empty() && json.contains("accuracy") && !states_accuracy(scene))
+    loaded.mistakes.push_back({"/accuracy", "has to state error_m or error_percent"});
   drop_zero_signs(scene);
   if (loaded.mistakes.empty()) loaded.mistakes = check(scene, untuned);
   if (loaded.mistakes.empty()) loaded.scene = std::move(scene);

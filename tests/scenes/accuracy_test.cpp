@@ -127,6 +127,8 @@ TEST(SceneAccuracyKey, MistakesAreNamedByPathAndReason) {
   };
   const BadKey bad_keys[] = {
       {R"("accuracy": 0.001)", "/accuracy", "has to be an object"},
+      {R"("accuracy": {})", "/accuracy", "has to state error_m or error_percent"},
+      {R"("accuracy": {"error_m": 0})", "/accuracy", "has to state error_m or error_percent"},
       {R"("accuracy": {"error_m": "1mm"})", "/accuracy/error_m", "has to be a number"},
       {R"("accuracy": {"error_m": -0.001})", "/accuracy/error_m", "above 0"},
       {R"("accuracy": {"error_m": 1001})", "/accuracy/error_m", "at most 1000"},
