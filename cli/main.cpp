@@ -1,5 +1,8 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#ifndef __wasm__
+#include <csignal>
+#endif
 #include <exception>
 #include <iostream>
 #include <string_view>
@@ -98,6 +101,14 @@ static Exit report_failure(Exit exit, const std::string& what, bool json) {
   return exit;
 }
 
+/// A file that may grow no further (`ulimit -f`) is an error of the disk, as a full one is: each
+/// command says so, and a server's other matches go on.
+static void take_file_size_limit_as_error() {
+#ifdef SIGXFSZ
+  std::signal(SIGXFSZ, SIG_IGN);
+#endif
+}
+
 }  // namespace cycloid::cli
 
 int main(int argc, char** argv) {
@@ -105,6 +116,7 @@ int main(int argc, char** argv) {
 #if defined(_WIN32)  // The same bytes on stdout everywhere: no \r\n, and binary scenes whole.
   _setmode(_fileno(stdout), _O_BINARY);
 #endif
+  take_file_size_limit_as_error();
   const bool json =
       std::any_of(argv, argv + argc, [](std::string_view word) { return word == "--json"; });
   Exit exit = kExitGood;

@@ -2,6 +2,7 @@
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
+#include <sys/resource.h>
 
 #include "tests/cli/program.hpp"
 
@@ -106,6 +107,41 @@ TEST_F(Serve, PortThatIsTakenIsAnInputOutputError) {
   const Ran ran = run_program({"serve", "half-pipe", "--port", port});
   EXPECT_EQ(ran.exit, 5);
   EXPECT_NE(ran.err, "");
+}
+
+/// How large a file may become that this process and its children write, while it lives.
+class FileSizeLimit {
+ public:
+  explicit FileSizeLimit(rlim_t bytes) {
+    getrlimit(RLIMIT_FSIZE, &before_);
+    const rlimit limit{bytes, before_.rlim_max};
+    setrlimit(RLIMIT_FSIZE, &limit);
+  }
+  FileSizeLimit(const FileSizeLimit&) = delete;
+  FileSizeLimit& operator=(const FileSizeLimit&) = delete;
+  ~FileSizeLimit() { setrlimit(RLIMIT_FSIZE, &before_); }
+
+ private:
+  rlimit before_{};
+};
+
+TEST(FileSize, OverItsLimitEndsTheLogAndNotTheMatch) {
+  const Folder folder;
+  const FileSizeLimit limit(16384);
+  const Ran ran = run_program({"serve", "half-pipe", "--port", "0", "--ticks", "1000",
+                               "--tick-rate", "1000", "--log", folder.file("a.cylog"), "--json"});
+  EXPECT_EQ(ran.exit, 5) << ran.err;
+  EXPECT_EQ(ran.json()["tick"], 1000);
+  EXPECT_EQ(ran.json()["durable"], false);
+  EXPECT_THAT(ran.err, HasSubstr("File too large"));
+}
+
+TEST(FileSize, OverItsLimitIsAnInputOutputErrorOfOtherCommandsToo) {
+  const Folder folder;
+  const FileSizeLimit limit(16384);
+  EXPECT_EQ(
+      run_program({"run", "half-pipe", "--ticks", "1000", "--log", folder.file("a.cylog")}).exit,
+      5);
 }
 
 TEST(Join, BadArgumentsAreUsage) {
