@@ -27,6 +27,8 @@ Host::Host(HostOptions options)
       epoch_ns_(process_now_ns()),
       drain_ms_(options_.drain.count()),
       limits_(options_.limits) {
+  // Lines that nobody reads any more end no match.
+  if (options_.catch_signals) std::signal(SIGPIPE, SIG_IGN);
   if (options_.logger == nullptr) options_.logger = stderr_logger();
   const auto trouble = [this](const std::string& why) {
     options_.logger->warn("cannot accept connections: {}; trying again, said once", why);

@@ -4,7 +4,10 @@
 #include <gtest/gtest.h>
 #include <sys/resource.h>
 
+#include <cstdlib>
+
 #include "tests/cli/program.hpp"
+#include "tests/places.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -124,6 +127,15 @@ class FileSizeLimit {
  private:
   rlimit before_{};
 };
+
+TEST(ServePipe, ThatNobodyReadsEndsNoMatch) {
+  const Folder folder;
+  const std::string command = "{ '" + places::program() +
+                              "' serve half-pipe --port 0 --ticks 60; echo $? > '" +
+                              folder.file("exit") + "'; } 2>&1 | true";
+  EXPECT_EQ(std::system(command.c_str()), 0);
+  EXPECT_EQ(read_text(folder.file("exit")), "5\n") << "it could not print its report";
+}
 
 TEST(FileSize, OverItsLimitEndsTheLogAndNotTheMatch) {
   const Folder folder;
