@@ -89,6 +89,7 @@ void Gatehouse::receive(asio::ip::tcp::socket socket) {
     auto talk = [this, id, caller] { return receive_tls(id, caller); };
     asio::co_spawn(strand_, std::move(talk), rethrow);
   } else {
+    caller->can_be_told = true;
     wait(id, caller);
   }
   sweep();
@@ -111,6 +112,7 @@ asio::awaitable<void> Gatehouse::receive_tls(GateId id, CallerPtr caller) {
     lose(id);
     co_return;
   }
+  caller->can_be_told = true;
   asio::error_code error;
   auto done = asio::redirect_error(asio::use_awaitable, error);
   std::array<std::byte, kTlsReadBytes> incoming;
@@ -202,13 +204,21 @@ void Gatehouse::see_off(const CallerPtr& caller, GateRefused refused) {
   leaving_.emplace(leaver, caller);
   const auto word = std::make_shared<const protocol::Bytes>(std::move(refused.message));
   auto written = [this, leaver, caller, word](const asio::error_code& error, std::size_t) {
-    asio::error_code ignored;
-    if (!error) caller->stream->socket().shutdown(asio::socket_base::shutdown_send, ignored);
-    wait_for_end(leaver, caller);
+    if (error) return wait_for_end(leaver, caller);
+    say_no_more(leaver, caller);
   };
   asio::async_write(*caller->stream, asio::buffer(*word),
                     asio::bind_executor(strand_, std::move(written)));
   sweep();
+}
+
+void Gatehouse::say_no_more(std::uint64_t leaver, const CallerPtr& caller) {
+  auto said = [this, leaver, caller](const asio::error_code&) {
+    asio::error_code ignored;
+    caller->stream->socket().shutdown(asio::socket_base::shutdown_send, ignored);
+    wait_for_end(leaver, caller);
+  };
+  caller->stream->async_shutdown(asio::bind_executor(strand_, std::move(said)));
 }
 
 void Gatehouse::wait_for_end(std::uint64_t leaver, const CallerPtr& caller) {
@@ -237,11 +247,10 @@ void Gatehouse::sweep() {
       const CallerPtr caller = found->second;
       lose(overdue.id);
       note(*caller, overdue.refused);
-      // In the middle of a handshake no word can be said.
-      if (caller->stream->is_tls()) {
-        caller->stream->close();
-      } else {
+      if (caller->can_be_told) {
         see_off(caller, std::move(overdue.refused));
+      } else {
+        caller->stream->close();
       }
     }
     while (!leaving_.empty() && leaving_.begin()->second->until_ns <= now_ns) {

@@ -62,6 +62,7 @@ class Gatehouse {
     std::unique_ptr<transport::Stream> stream;
     PeerAddress address;
     std::shared_ptr<void> count;
+    bool can_be_told = false;   ///< Not in the middle of a handshake.
     std::int64_t until_ns = 0;  ///< Of one that leaves.
   };
   using CallerPtr = std::shared_ptr<Caller>;
@@ -78,6 +79,7 @@ class Gatehouse {
   bool hear(GateId id, const CallerPtr& caller, std::span<const std::byte> bytes);
   void lose(GateId id);
   void see_off(const CallerPtr& caller, GateRefused refused);
+  void say_no_more(std::uint64_t leaver, const CallerPtr& caller);
   void wait_for_end(std::uint64_t leaver, const CallerPtr& caller);
   void note(const Caller& caller, const GateRefused& refused);
   void sweep();

@@ -49,6 +49,13 @@ class TlsHostPeer {
       (void)framer_.feed(std::span<const std::byte>(bytes).first(count));
     }
   }
+  /// What ends the connection, whatever is said before.
+  asio::error_code wait_for_end() {
+    std::array<std::byte, 4096> bytes;
+    asio::error_code error;
+    while (!error) (void)stream_.read_some(asio::buffer(bytes), error);
+    return error;
+  }
   /// "CN" of the server's certificate.
   std::string server_name() {
     const std::unique_ptr<X509, void (*)(X509*)> certificate(
@@ -134,6 +141,21 @@ TEST_F(HostTls, WhoSpeaksPlainlyIsToldSo) {
   const auto refused = peer.wait_for<protocol::Refused>();
   ASSERT_TRUE(refused);
   EXPECT_EQ(refused->reason, "this server speaks TLS only");
+}
+
+TEST_F(HostTls, WhoSaysNoHelloInTimeIsToldSo) {
+  HostLines lines;
+  HostOptions options = quiet_host(lines);
+  options.tls = std::make_shared<ServerTls>(TlsFiles{file("server.pem"), file("server.key")});
+  options.gate.hello_deadline_ns = 500'000'000;
+  options.rooms.push_back({"arena", two_seat_settings()});
+  RunningHost server(std::move(options));
+  TlsHostPeer peer(server.port(), file("ca.pem"));
+  const auto refused = peer.wait_for<protocol::Refused>();
+  ASSERT_TRUE(refused);
+  EXPECT_EQ(refused->code, protocol::Refusal::kTooSlow);
+  EXPECT_NE(refused->reason, "");
+  EXPECT_EQ(peer.wait_for_end(), asio::error::eof) << "with the farewell of TLS";
 }
 
 TEST_F(HostTls, AReloadTakesTheNewCertificateAndKeepsWhoIsThere) {
