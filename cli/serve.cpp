@@ -149,6 +149,9 @@ Exit serve(ServeCommand command, bool json) {
   }
   if (command.scene.empty()) throw Failure(kExitUsage, "SCENE or --config is required");
   if (command.check_config) throw Failure(kExitUsage, "--check-config needs --config");
+  if (command.tick_rate > 0.0 && command.tick_rate < 0.001) {
+    throw Failure(kExitUsage, "--tick-rate: it is not 0 and less than 0.001");
+  }
   server::ServeOptions& options = command.options;
   options.scene = load_scene(command.scene);
   options.scene_name = options.scene.name;

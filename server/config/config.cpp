@@ -24,6 +24,9 @@
 namespace cycloid::server {
 namespace {
 
+/// Numbers count in thousandths: what is less would be taken for 0.
+constexpr double kNumberStep = 0.001;
+
 std::uint32_t line_of(const toml::node& node) {
   return static_cast<std::uint32_t>(node.source().begin.line);
 }
@@ -135,7 +138,9 @@ class Reader {
       case ConfigKind::kNumber:
         if (!node.is_number()) return wrong_type("a number");
         value.number = *node.value<double>();
-        break;
+        if (value.number <= 0 || value.number >= kNumberStep) break;
+        complain(line_of(node), name, "it is not 0 and less than " + number_text(kNumberStep));
+        return false;
       case ConfigKind::kFlag:
         if (!node.is_boolean()) return wrong_type("true or false");
         value.flag = node.as_boolean()->get();

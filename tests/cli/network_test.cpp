@@ -128,6 +128,13 @@ class FileSizeLimit {
   rlimit before_{};
 };
 
+TEST(ServeArguments, ATickRateThatWouldRoundToTheScenesIsUsage) {
+  const Ran ran =
+      run_program({"serve", "half-pipe", "--port", "0", "--ticks", "1", "--tick-rate", "0.0001"});
+  EXPECT_EQ(ran.exit, 2);
+  EXPECT_THAT(ran.err, HasSubstr("--tick-rate"));
+}
+
 TEST(ServePipe, ThatNobodyReadsEndsNoMatch) {
   const Folder folder;
   const std::string command = "{ '" + places::program() +

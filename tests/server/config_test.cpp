@@ -145,6 +145,22 @@ TEST(Config, ANameThatNoFolderCanHaveIsNoReasonToEnd) {
   EXPECT_EQ(read.mistakes[0].key, "template.long.log_directory");
 }
 
+TEST(Config, ATickRateThatWouldRoundToTheScenesIsRefused) {
+  const auto read_rate = [](const char* rate) {
+    return read_config("[template.slow]\nscene = \"two-seats\"\ntick_rate_hz = " +
+                           std::string(rate) + "\n" + kConfigRooms,
+                       load_for_test);
+  };
+  for (const char* rate : {"0.0001", "0.0009", "1e-300"}) {
+    const ConfigResult read = read_rate(rate);
+    ASSERT_EQ(read.mistakes.size(), 1u) << rate;
+    EXPECT_EQ(read.mistakes[0].key, "template.slow.tick_rate_hz");
+    EXPECT_EQ(read.mistakes[0].line, 3u);
+    EXPECT_EQ(read.mistakes[0].reason, "it is not 0 and less than 0.001");
+  }
+  for (const char* rate : {"0", "0.0", "0.001", "60"}) EXPECT_TRUE(read_rate(rate).config) << rate;
+}
+
 TEST(Config, WhatIsNotAsciiIsRefusedWithItsLine) {
   const ConfigResult read = read_config("[server]\n# caf\xc3\xa9\n", load_for_test);
   ASSERT_FALSE(read.config);
