@@ -109,7 +109,9 @@ ActResult RoomLog::rotate() {
     return {409, "rotate: the room writes no log into a log_directory"};
   }
   const std::error_code error = writer_->rotate(path);
-  return error ? ActResult{409, "rotate: " + path + ": " + error.message()} : ActResult{};
+  if (!error) return {};
+  const bool is_under_way = error == std::errc::device_or_resource_busy;
+  return {is_under_way ? 409 : kCannotWrite, "rotate: " + path + ": " + error.message()};
 }
 
 void RoomLog::close(const protocol::LogFooter& footer) {

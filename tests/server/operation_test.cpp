@@ -321,6 +321,20 @@ TEST_F(OperationTest, ARotatedLogGoesOnInAnotherFile) {
   EXPECT_GT(ticks, rotated + 5);
 }
 
+TEST_F(OperationTest, ALogThatCannotBeRotatedForItsDiskIsAnErrorOfTheServer) {
+  const std::filesystem::path folder =
+      testing::TempDir() + "/cycloid-rotates-not-" + std::to_string(::getpid());
+  std::filesystem::create_directories(folder);
+  HostOptions options = quiet_host(lines_);
+  options.rooms.push_back({"arena", two_seat_settings()});
+  options.rooms[0].settings.log_directory = folder;
+  open(std::move(options));
+  std::filesystem::remove_all(folder);
+  const Answer answer = post("/admin/rooms/arena/rotate");
+  EXPECT_EQ(answer.status, 500);
+  EXPECT_TRUE(error_of(answer).starts_with("rotate: " + folder.string())) << answer.body;
+}
+
 TEST_F(OperationTest, WithoutTheTokenNothingIsToldAndNothingDone) {
   open();
   for (const std::string token :
