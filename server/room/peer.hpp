@@ -54,6 +54,7 @@ struct Peer {
   ActBudget overruns;
 
   std::string name;
+  std::string identity;  ///< Of its token; "" where it had none.
   std::string build;
   Role role = Role::kPlayer;
   protocol::Mode mode = protocol::Mode::kLockstep;

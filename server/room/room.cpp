@@ -147,9 +147,10 @@ void Room::refuse(PeerId id, Peer& peer, protocol::Refusal code, const std::stri
   if (peer.stage == PeerStage::kClosing) return;
   ++statistics_.refusals;
   ++statistics_.refusals_by_code[static_cast<std::size_t>(code)];
-  notice(Notice::Kind::kRefusal,
-         "client " + std::to_string(id) + " \"" + protocol::printable(peer.name) +
-             "\" refused: " + protocol::refusal_name(code) + ": " + protocol::printable(reason));
+  notice(Notice::Kind::kRefusal, "client " + std::to_string(id) + " \"" +
+                                     protocol::printable(peer.name) + "\"" + identity_text(peer) +
+                                     " refused: " + protocol::refusal_name(code) + ": " +
+                                     protocol::printable(reason));
   give_up_seat(peer, seat_event);
   if (peer.playing() && hooks_.inquiry != nullptr) hooks_.inquiry->on_gone(id);
   peer.stage = PeerStage::kClosing;
@@ -218,8 +219,8 @@ void Room::leave(PeerId id, Peer& peer, const std::string& why, protocol::EventK
   if (hooks_.inquiry != nullptr) hooks_.inquiry->on_gone(id);
   peer.stage = PeerStage::kClosing;
   notice(Notice::Kind::kLeave, "client " + std::to_string(id) + " \"" +
-                                   protocol::printable(peer.name) +
-                                   "\" left: " + protocol::printable(why));
+                                   protocol::printable(peer.name) + "\"" + identity_text(peer) +
+                                   " left: " + protocol::printable(why));
 }
 
 void Room::answer(PeerId id, Peer& peer, const protocol::ServerMessage& message) {
@@ -228,6 +229,11 @@ void Room::answer(PeerId id, Peer& peer, const protocol::ServerMessage& message)
   refuse(id, peer, protocol::Refusal::kTooSlow,
          "more than " + std::to_string(options_.limits.queue_bytes_max) + " bytes wait for it",
          protocol::EventKind::kLost);
+}
+
+std::string Room::identity_text(const Peer& peer) {
+  if (peer.identity.empty()) return "";
+  return ", identity \"" + protocol::printable(peer.identity) + "\"";
 }
 
 void Room::notice(Notice::Kind kind, const std::string& text) const {

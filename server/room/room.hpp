@@ -170,6 +170,8 @@ class Room {
   void give_up_seat(Peer& peer, protocol::EventKind event);
   void leave(PeerId id, Peer& peer, const std::string& why, protocol::EventKind seat_event);
   void answer(PeerId id, Peer& peer, const protocol::ServerMessage& message);
+  /// For the lines of the log: what its token says of who it is, or "".
+  static std::string identity_text(const Peer& peer);
   void notice(Notice::Kind kind, const std::string& text) const;
 
   // room_hello.cpp: from hello to a seat.

@@ -16,6 +16,7 @@ std::string differ(const std::string& what, const std::string& theirs, const std
 void Room::greet(PeerId id, Peer& peer, const Admission& admission) {
   const protocol::Hello& hello = admission.hello;
   peer.name = hello.name;
+  peer.identity = admission.identity;
   peer.build = hello.build;
   peer.role = admission.role;
   if (refuse_other_build(id, peer, hello)) return;
@@ -40,7 +41,8 @@ void Room::greet(PeerId id, Peer& peer, const Admission& admission) {
   notice(Notice::Kind::kJoin,
          "client " + std::to_string(id) + (resumes ? " came back" : " joined") + " at tick " +
              std::to_string(simulation_.tick()) +
-             (peer.seat < 0 ? " as spectator" : " in seat " + std::to_string(peer.seat)));
+             (peer.seat < 0 ? " as spectator" : " in seat " + std::to_string(peer.seat)) +
+             identity_text(peer));
 }
 
 bool Room::refuse_other_build(PeerId id, Peer& peer, const protocol::Hello& hello) {
@@ -116,6 +118,7 @@ bool Room::resume_seat(PeerId id, Peer& peer, const Admission& admission) {
     events_.push_back({protocol::EventKind::kLost, event_seat});
   }
   seats_.resume(*seat, id);
+  peer.identity = seats_[*seat].identity;  // A resume token says none.
   events_.push_back({protocol::EventKind::kResume, event_seat});
   peer.seat = static_cast<std::int32_t>(*seat);
   return true;

@@ -1,5 +1,7 @@
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "solver/version.hpp"
 #include "tests/server/room_fixture.hpp"
 
@@ -57,6 +59,36 @@ TEST_F(RoomSeats, AReservedSeatIsClaimedByItsIdentityOnly) {
   EXPECT_EQ(room_->seats()[1].holder, any) << "any seat is one that is free";
   const PeerId ada = admit(protocol::kAnySeat, Role::kPlayer, "ada");
   EXPECT_EQ(room_->seats()[0].holder, ada) << "and for her it is her own";
+}
+
+TEST_F(RoomSeats, AnIdentityStandsInTheLogAndFakesNoLineOfIt) {
+  open();
+  (void)admit(0, Role::kPlayer, "ada\nroom arena: client 7 joined");
+  const PeerId eve = admit(0, Role::kPlayer, "eve");
+  run(1);
+  room_->disconnect(admit(1, Role::kPlayer, "bob"));
+  const auto said = [&](const std::string& words) {
+    return std::ranges::any_of(notices_, [&](const Notice& notice) {
+      EXPECT_EQ(notice.text.find('\n'), std::string::npos) << notice.text;
+      return notice.text.find(words) != std::string::npos;
+    });
+  };
+  EXPECT_TRUE(said("in seat 0, identity \"ada?room arena: client 7 joined\""));
+  EXPECT_TRUE(room_->wants_close(eve) && said("identity \"eve\" refused: kSeatTaken"));
+  EXPECT_TRUE(said("joined at tick 1 in seat 1, identity \"bob\""));
+  EXPECT_TRUE(said("identity \"bob\" left: "));
+}
+
+TEST_F(RoomSeats, WhoComesBackIsNamedByTheIdentityOfItsSeat) {
+  open(one_second_to_resume());
+  const PeerId first = admit(1, Role::kPlayer, "ada");
+  const auto secret = secret_of(first);
+  run(1);
+  room_->disconnect(first);
+  (void)come_back(secret);
+  EXPECT_NE(notices_.back().text.find("came back at tick 1 in seat 1, identity \"ada\""),
+            std::string::npos)
+      << notices_.back().text;
 }
 
 TEST_F(RoomSeats, ASeatReservedForNoIdentityIsClaimedByATokenBoundToIt) {
