@@ -66,7 +66,7 @@ struct RoomMeters {
   Meter queue_bytes;
   Meter catch_up_ticks;  ///< Made in one go behind the first.
   Meter slowed_ns;
-  Meter encodes;  ///< States that were encoded for clients.
+  Meter encodes;  ///< States that were encoded, for clients or to be kept.
   Meter durable;  ///< 1, or 0 once the log has ended early.
   DurationMeter lateness;
   DurationMeter tick_time;

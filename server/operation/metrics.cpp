@@ -80,8 +80,8 @@ constexpr RoomNumber kRoomNumbers[] = {
      MetricType::Counter, &RoomMeters::catch_up_ticks},
     {"cycloid_room_slowed_seconds_total", "Time by which overload or a pause put the match off.",
      MetricType::Counter, &RoomMeters::slowed_ns, 1e-9},
-    {"cycloid_room_encodes_total", "States that were encoded for clients.", MetricType::Counter,
-     &RoomMeters::encodes},
+    {"cycloid_room_encodes_total", "States that were encoded, for clients or to be kept.",
+     MetricType::Counter, &RoomMeters::encodes},
 };
 
 using Rooms = std::vector<std::shared_ptr<HostedRoom>>;
