@@ -64,7 +64,9 @@ std::optional<LifeAct> life_act_of(const std::string& verb) {
 
 /// What is asked for, as far as the path says.
 struct Admin::Act {
-  explicit Act(const std::string& body) : fields(body) {}
+  explicit Act(const HttpRequest& request) : fields(request.body_cut ? "" : request.body) {
+    if (request.body_cut) fields.complain("body: it ends before all of it has come");
+  }
   std::string room;
   std::string verb;
   AdminFields fields;
@@ -132,7 +134,7 @@ HttpReply Admin::handle(const HttpRequest& request) {
     return reply_of(413, {{"error", "body: more than " + std::to_string(HttpServer::kBodyBytesMax) +
                                         " bytes"}});
   }
-  Act act(request.body);
+  Act act(request);
   HttpReply reply = route(request, act);
   if (request.method != "GET") audit(request, act, reply);
   return reply;

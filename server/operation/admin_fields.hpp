@@ -19,6 +19,7 @@ class AdminFields {
   std::string text_or(const char* name, const char* otherwise);
   std::uint64_t number(const char* name, std::uint64_t most);  ///< Must be there; from 0.
   std::uint64_t number_or(const char* name, std::uint64_t otherwise, std::uint64_t most);
+  void complain(const std::string& mistake);
   /// "", or the first mistake as a sentence that begins with the field's name.
   std::string mistake();
 
@@ -28,7 +29,6 @@ class AdminFields {
   const nlohmann::json* find(const char* name, bool needed);
   std::string text_of(const char* name, const nlohmann::json& value);
   std::uint64_t number_of(const char* name, const nlohmann::json& value, std::uint64_t most);
-  void complain(const std::string& mistake);
 
   nlohmann::json fields_ = nlohmann::json::object();
   std::set<std::string> asked_;

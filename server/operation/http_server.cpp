@@ -10,16 +10,19 @@
 namespace cycloid::server {
 namespace {
 
-/// Reads what the request announces, up to the bound. False where it is more.
-bool read_body(mg_connection* connection, long long announced, std::string& body) {
-  if (announced > static_cast<long long>(HttpServer::kBodyBytesMax)) return false;
+/// Reads what the request announces, below 0 where it does not say, up to the bound.
+void read_body(mg_connection* connection, long long announced, HttpRequest& request) {
+  constexpr auto kMost = static_cast<long long>(HttpServer::kBodyBytesMax);
+  request.body_too_large = announced > kMost;
   char piece[4096];
-  for (;;) {
+  while (!request.body_too_large) {
     const int count = mg_read(connection, piece, sizeof piece);
-    if (count <= 0) return true;
-    if (body.size() + static_cast<std::size_t>(count) > HttpServer::kBodyBytesMax) return false;
-    body.append(piece, static_cast<std::size_t>(count));
+    if (count <= 0) break;
+    request.body.append(piece, static_cast<std::size_t>(count));
+    request.body_too_large = std::cmp_greater(request.body.size(), kMost);
   }
+  if (request.body_too_large) request.body.clear();
+  request.body_cut = !request.body_too_large && std::cmp_less(request.body.size(), announced);
 }
 
 void send(mg_connection* connection, const HttpReply& reply) {
@@ -43,10 +46,7 @@ int on_request(mg_connection* connection, void* data) {
   request.path = info->local_uri == nullptr ? "" : info->local_uri;
   request.from = std::string(info->remote_addr) + ":" + std::to_string(info->remote_port);
   if (const char* word = mg_get_header(connection, "Authorization")) request.authorization = word;
-  if (!read_body(connection, info->content_length, request.body)) {
-    request.body.clear();
-    request.body_too_large = true;
-  }
+  read_body(connection, info->content_length, request);
   HttpReply reply;
   try {
     reply = (*static_cast<HttpServer::Handler*>(data))(request);
@@ -63,10 +63,11 @@ HttpServer::HttpServer(const std::string& address, std::uint16_t port, Handler h
     : handler_(std::move(handler)) {
   const bool v6 = address.find(':') != std::string::npos;
   const std::string at = (v6 ? "[" + address + "]" : address) + ":" + std::to_string(port);
+  const std::string threads = std::to_string(kConnections);
   const char* options[] = {"listening_ports",
                            at.c_str(),
                            "num_threads",
-                           "4",
+                           threads.c_str(),
                            "request_timeout_ms",
                            "5000",
                            "enable_keep_alive",

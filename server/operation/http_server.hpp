@@ -15,6 +15,7 @@ struct HttpRequest {
   std::string authorization;
   std::string body;
   bool body_too_large = false;  ///< Then `body` is empty.
+  bool body_cut = false;        ///< It ended before all that was announced had come.
   std::string from;             ///< Address and port.
 };
 
@@ -30,6 +31,8 @@ class HttpServer {
  public:
   using Handler = std::function<HttpReply(const HttpRequest&)>;
   static constexpr std::size_t kBodyBytesMax = 65536;
+  /// Served side by side, a thread each: so many must be silent, for 5 s, before others wait.
+  static constexpr int kConnections = 64;
 
   /// @param port  0: any.
   /// @param handler  Called on the server's threads, several at a time.

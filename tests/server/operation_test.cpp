@@ -3,6 +3,9 @@
 #include <gtest/gtest.h>
 #include <unistd.h>
 
+#include <asio/connect.hpp>
+#include <asio/ip/tcp.hpp>
+#include <chrono>
 #include <filesystem>
 #include <fstream>
 #include <iterator>
@@ -11,6 +14,7 @@
 #include <regex>
 #include <set>
 #include <sstream>
+#include <vector>
 
 #include "server/operation/admin_fields.hpp"
 #include "tests/server/host_fixture.hpp"
@@ -277,6 +281,39 @@ TEST_F(OperationTest, EveryMistakeOfAnAdminGetsAStatusAndNamesTheField) {
   EXPECT_NE(wrong.head.find("Allow: POST"), std::string::npos);
   EXPECT_EQ(server_->host().rooms().size(), 1u);
   EXPECT_EQ(server_->host().find("arena")->stage(), LifeStage::kRunning);
+}
+
+TEST_F(OperationTest, WhoSaysNothingKeepsNobodyWaiting) {
+  open();
+  asio::io_context io;
+  std::vector<asio::ip::tcp::socket> silent;
+  for (int i = 0; i < HttpServer::kConnections / 2; ++i)
+    silent.emplace_back(io).connect({asio::ip::address_v4::loopback(), operation_->port()});
+  const auto begin = std::chrono::steady_clock::now();
+  EXPECT_EQ(get("/livez").status, 200);
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4))
+      << "it waited for one of them to be given up";
+}
+
+TEST_F(OperationTest, ABodyThatIsCutOffIsAMistakeAndNothingIsDone) {
+  open();
+  const auto cut = [&](const std::string& path, const std::string& body) {
+    const std::string head = "POST " + path + " HTTP/1.1\r\nAuthorization: Bearer " + kAdminToken;
+    return http_bytes(operation_->port(), head + "\r\nContent-Length: 22\r\n\r\n" + body, true);
+  };
+  for (const char* path : {"/admin/drain", "/admin/rooms/arena/lock", "/admin/rooms/arena/end"}) {
+    for (const char* body : {"", "{}", "{\"deadline_ms\""}) {
+      const Answer answer = cut(path, body);
+      EXPECT_EQ(answer.status, 400) << path << body;
+      EXPECT_EQ(error_of(answer), "body: it ends before all of it has come") << path << body;
+    }
+  }
+  const auto room = server_->host().find("arena");
+  ASSERT_TRUE(room);
+  EXPECT_EQ(room->stage(), LifeStage::kRunning);
+  EXPECT_FALSE(room->locked());
+  EXPECT_FALSE(server_->host().draining());
+  EXPECT_NE(close().find(R"("audit":"drain","from")"), std::string::npos) << "on record, too";
 }
 
 TEST_F(OperationTest, ADrainWithoutADeadlineLastsAsLongAsTheHostSaysNow) {
