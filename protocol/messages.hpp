@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "scenes/simulation.hpp"
+#include "solver/definitions.hpp"
 #include "solver/version.hpp"
 
 namespace cycloid::protocol {
@@ -52,9 +53,8 @@ inline constexpr std::uint32_t kHelloBytesMax = 1024;  ///< Before the hello is 
 inline constexpr std::uint32_t kClientMessageBytesMax = 4096;
 inline constexpr std::uint32_t kServerMessageBytesMax = 64u << 20;
 
-/// All ticks of messages and logs lie below. No match comes near it, ticks of a lead can be added
-/// without a thought, and each is a number that JSON has, too.
-inline constexpr std::uint64_t kTickEnd = std::uint64_t{1} << 53;
+/// Of messages and logs, too.
+using solver::kTickEnd;
 
 inline constexpr std::size_t kNameBytesMax = 64;
 inline constexpr std::size_t kRoomNameBytesMax = 64;

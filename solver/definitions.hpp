@@ -8,6 +8,10 @@
 
 namespace cycloid::solver {
 
+/// All ticks lie below. No match comes near it, ticks of a lead can be added without a thought, and
+/// each is a number that a double, and so JSON, has too.
+inline constexpr std::uint64_t kTickEnd = std::uint64_t{1} << 53;
+
 /// Names one body for as long as it lives. A body created later in the same slot has another
 /// generation, so a stale id is refused and never names another body.
 struct BodyId {
@@ -38,6 +42,16 @@ struct PinId {
   std::uint32_t index = 0xffffffffu;
   std::uint32_t generation = 0;
   friend bool operator==(const PinId&, const PinId&) = default;
+};
+
+/// Two shapes began or ceased to touch in the last step.
+struct ContactEvent {
+  BodyId body_a;
+  BodyId body_b;
+  std::uint32_t shape_a = 0;  ///< Index of the shape within its body.
+  std::uint32_t shape_b = 0;
+  bool began = false;
+  friend bool operator==(const ContactEvent&, const ContactEvent&) = default;
 };
 
 enum class BodyKind : std::uint32_t {

@@ -192,6 +192,18 @@ static bool particles_moved(const StepContext<D>& context, StepScratch<D>& scrat
   return true;
 }
 
+/// What has ended and begun, before the contacts of this tick take the place of the last one's; to
+/// be told once nothing can undo the tick. @param ended  By calls since the last step.
+template <int D>
+static void list_events(const WorldState<D>& state, const std::vector<ContactEvent>& ended,
+                        StepScratch<D>& scratch) {
+  scratch.events = ended;
+  for (const std::uint32_t contact : scratch.ended)
+    scratch.events.push_back(contact_event(state, state.contacts[contact], false));
+  for (const std::uint32_t contact : scratch.began)
+    scratch.events.push_back(contact_event(state, scratch.contacts[contact], true));
+}
+
 template <int D>
 Error World<D>::step() {
   if (state_.header.fault.field != kFaultNone) return {Code::kFaulted, "step"};
@@ -255,12 +267,7 @@ Error World<D>::step_in_lanes() {
     state_.header.fault = fault;
     return {Code::kFaulted, fault_field_name(fault.field), static_cast<int>(fault.body.index)};
   }
-  events_.swap(ended_);
-  ended_.clear();
-  for (const std::uint32_t contact : scratch.ended)
-    events_.push_back(contact_event(state_, state_.contacts[contact], false));
-  for (const std::uint32_t contact : scratch.began)
-    events_.push_back(contact_event(state_, scratch.contacts[contact], true));
+  list_events<D>(state_, ended_, scratch);
   if (!state_.particles.empty()) scratch.before = state_;
   finalize(*workers_, scratch, state_);
   traced(Phase::kFinalize);
@@ -272,6 +279,8 @@ Error World<D>::step_in_lanes() {
     return {Code::kFaulted, "particle"};
   }
   if (!state_.particles.empty()) traced(Phase::kParticles);
+  events_ = scratch.events;
+  ended_.clear();
   statistics_ = count_work(state_, *workers_, scratch);
   return {};
 }

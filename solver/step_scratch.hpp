@@ -139,6 +139,7 @@ struct ContactList {
   std::vector<LiveContact<D>> live;  ///< Those with a manifold, in their order.
   std::vector<std::uint32_t> began;  ///< Contacts that touch and did not.
   std::vector<std::uint32_t> ended;  ///< Contacts of the state that no longer touch.
+  std::vector<ContactEvent> events;  ///< Of both, to be told once the tick is made.
   std::vector<Manifold<D>> found;    ///< Of a batch of pairs; empty where shapes are apart.
   HeldPairs<D> held_pairs;           ///< For the next tick.
   ContactRoom<D> room;               ///< Of a chunk: the first contacts are there, and in no list.

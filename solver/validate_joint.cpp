@@ -88,6 +88,8 @@ static Error validate_geometry(const JointDef<D>& def) {
   if (!within(def.ground_b, kPositionMax)) return invalid("ground_b");
   // Also of a joint that has no curve: a state keeps it, and no enumerator in it may be unknown.
   if (def.curve > CurveKind::kPolyline) return invalid("curve");
+  for (const float size : def.size)
+    if (!within(size, 0.0f, kSizeMax)) return invalid("size");
   if (def.kind != JointKind::kCurve) return {};
   if (def.curve == CurveKind::kPolyline) return {};
   const bool two = def.curve == CurveKind::kEllipse;

@@ -265,6 +265,7 @@ static Error validate_header(const WorldState<D>& state) {
   const WorldHeader<D>& header = state.header;
   if (!within(header.gravity, 1.0e4f)) return corrupt("gravity", 0);
   if (!within(header.tick_s, 1.0e-5f, 1.0f)) return corrupt("tick_s", 0);
+  if (header.tick >= kTickEnd) return corrupt("tick", 0);
   if (!validate(header.tuning).ok()) return corrupt("tuning", 0);
   if (!validate(header.limits).ok()) return corrupt("limits", 0);
   if (header.fault.field > kFaultParticle) return corrupt("fault", 0);

@@ -30,16 +30,6 @@ struct JointRows;
 template <int D>
 using RowsFunction = void (*)(const JointFrame<D>& frame, JointRows<D>& rows);
 
-/// Two shapes began or ceased to touch in the last step.
-struct ContactEvent {
-  BodyId body_a;
-  BodyId body_b;
-  std::uint32_t shape_a = 0;  ///< Index of the shape within its body.
-  std::uint32_t shape_b = 0;
-  bool began = false;
-  friend bool operator==(const ContactEvent&, const ContactEvent&) = default;
-};
-
 /// What the last step did; not part of the state.
 struct Statistics {
   std::uint32_t bodies = 0;
@@ -193,7 +183,8 @@ class World {
   Result<float> joint_separation(JointId id) const;
 
   /// Of the last step: first all that ended, then all that began, each in the order of the shapes'
-  /// slots.
+  /// slots; before them what calls have ended since the step before, in the order of the calls.
+  /// Events are no part of the state: who restores it hears of nothing that came before.
   std::span<const ContactEvent> contact_events() const { return events_; }
   const Statistics& statistics() const { return statistics_; }
 

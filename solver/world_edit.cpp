@@ -109,6 +109,8 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
   Body<D> body = body_from(def);
   if (const Error error = set_mass_properties(def, defs, shapes, hulls, def_of, body); !error.ok())
     return error;
+  body.position = def.position + rotate(body.rotation, body.local_center);
+  if (!within(body.position, kPositionMax)) return invalid("position");
   if (!has_room(state_.bodies, state_.free_bodies, 1, state_.header.limits.bodies))
     return Error{Code::kCapacity, "limits.bodies"};
   if (!has_room(state_.shapes, state_.free_shapes, shapes.size(), state_.header.limits.shapes))
@@ -116,7 +118,6 @@ Result<BodyId> World<D>::create_body(const BodyDef<D>& def, std::span<const Shap
 
   const std::uint32_t index = take_slot(state_.bodies, state_.free_bodies);
   body.generation = state_.bodies[index].generation;
-  body.position = def.position + rotate(body.rotation, body.local_center);
   for (Shape<D>& shape : shapes) adopt_hull(hulls, state_.polyhedra, shape);
   state_.shapes.edit([&](std::vector<Shape<D>>& all) {
     attach_shapes(shapes, index, state_.free_shapes, all, body);

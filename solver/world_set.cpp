@@ -80,9 +80,12 @@ Error World<D>::set_pose(BodyId id, const Vec<D>& position, const Rotation<D>& r
   if (const Error error = check(id); !error.ok()) return error;
   if (!within(position, kPositionMax)) return invalid("position");
   if (!within(dot(rotation, rotation), 0.998f, 1.002f)) return invalid("rotation");
+  const Rotation<D> unit = normalized_or(rotation, rotation);
+  const Vec<D> centre = position + rotate(unit, state_.bodies[id.index].local_center);
+  if (!within(centre, kPositionMax)) return invalid("position");
   BodyMotion<D>& body = state_.bodies.moved(id.index);
-  body.rotation = normalized_or(rotation, rotation);
-  body.position = position + rotate(body.rotation, state_.bodies[id.index].local_center);
+  body.rotation = unit;
+  body.position = centre;
   note_move(state_.bodies[id.index], kept_->pair_cache);
   // Nobody looks for the pairs of two bodies that rest, so what may touch it now has to look.
   wake_all(state_, kept_->active_bodies);

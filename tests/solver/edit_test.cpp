@@ -21,6 +21,10 @@ TEST(CreateBody, RefusesEachMistakeByItsFieldAndChangesNothing) {
       {"position", -1, [](auto& b, auto&) { b.position[1] = kNan; }},
       {"position", -1, [](auto& b, auto&) { b.position[0] = kInfinity; }},
       {"position", -1, [](auto& b, auto&) { b.position[0] = 2.0e7f; }},
+      {"position", -1,  // Of the centre of mass.
+       [](auto& b, auto& s) {
+         b.position[0] = 1.0e7f, s[0].points = {{{10.0f, 0.0f}}};
+       }},
       {"rotation", -1,
        [](auto& b, auto&) {
          b.rotation = {{0.0f, 0.0f}};
@@ -146,6 +150,10 @@ TEST(CreateJoint, RefusesEachMistakeByItsField) {
          [](auto& d) { d.kind = JointKind::kWeld, d.limit_enabled = true; });
   expect("ratio", Code::kInvalid, [](auto& d) { d.kind = JointKind::kGear, d.ratio = 0.0f; });
   expect("size", Code::kInvalid, [](auto& d) { d.kind = JointKind::kCurve; });
+  expect("size", Code::kInvalid, [](auto& d) { d.size[0] = kNan; });
+  expect("size", Code::kInvalid, [](auto& d) {
+    d.kind = JointKind::kCurve, d.size = {1.0f, kInfinity};
+  });
   expect("curve", Code::kInvalid,
          [](auto& d) { d.kind = JointKind::kCurve, d.curve = CurveKind::kPolyline; });
   expect("user_kind", Code::kInvalid, [](auto& d) { d.kind = JointKind::kUser; });
@@ -292,6 +300,18 @@ TEST(Setters, RefuseWhatIsNotFiniteAndChangeNothing) {
   tuning.substeps = 65;
   EXPECT_STREQ(world.set_tuning(tuning).field, "substeps");
   EXPECT_EQ(world.digest(), before);
+}
+
+TEST(Setters, RefuseAPoseWhoseCentreOfMassIsOutOfBounds) {
+  World<2> world = make_world<2>();
+  ShapeDef<2> aside = ball<2>(0.5f);
+  aside.points = {{{10.0f, 0.0f}}};
+  const BodyId id = add_at<2>(world, {{0.0f, 0.0f}}, aside);
+  const std::uint64_t before = world.digest();
+  EXPECT_STREQ(world.set_pose(id, {{1.0e7f, 0.0f}}, {{1.0f, 0.0f}}).field, "position");
+  EXPECT_EQ(world.digest(), before);
+  EXPECT_TRUE(world.set_pose(id, {{1.0e7f, 0.0f}}, {{-1.0f, 0.0f}}).ok()) << "it lies inside";
+  EXPECT_TRUE(world.step().ok());
 }
 
 TEST(Events, BeginAndEndAreReportedOnceAndInOrder) {

@@ -223,6 +223,20 @@ TEST(Snapshot, EverySingleBitFlipIsRefusedOrSeenInTheDigest) {
   EXPECT_GT(refused, 100);
 }
 
+TEST(Snapshot, OfATickThatNoMatchHasIsRefused) {
+  World<2> world = make_world<2>();
+  WorldState<2> state;
+  world.save(state);
+  World<2> other = make_world<2>();
+  for (const std::uint64_t tick : {kTickEnd - 1, kTickEnd, ~std::uint64_t{0}}) {
+    state.header.tick = tick;
+    world.restore(state);
+    std::vector<std::byte> bytes;
+    world.encode(bytes);
+    EXPECT_EQ(other.decode(bytes).ok(), tick < kTickEnd) << tick;
+  }
+}
+
 TEST(Snapshot, OfTheOtherDimensionIsRefused) {
   std::vector<std::byte> bytes;
   busy_world().encode(bytes);

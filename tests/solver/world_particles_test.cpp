@@ -149,6 +149,8 @@ TEST(WorldParticles, OneThatLeavesTheBoundsFaultsTheWorldAndUndoesTheTick) {
   World<2> world = make_world(def);
   const BodyId body = add_at<2>(world, {{0.0f, 0.0f}}, ball<2>(0.5f));
   ASSERT_TRUE(world.set_velocity(body, {{1.0f, 0.0f}}, {{0.0f}}).ok());
+  // It begins to touch this one in the tick in which the particle goes too far.
+  add_at<2>(world, {{0.999f, 0.0f}}, ball<2>(0.5f));
   ParticleDef<2> fast;
   fast.position = {{9.9999e6f, 0.0f}};
   fast.velocity = {{9.0e4f, 0.0f}};
@@ -162,6 +164,8 @@ TEST(WorldParticles, OneThatLeavesTheBoundsFaultsTheWorldAndUndoesTheTick) {
   }
   EXPECT_EQ(error.code, Code::kFaulted);
   EXPECT_STREQ(error.field, "particle");
+  EXPECT_EQ(ticks, 1);
+  EXPECT_TRUE(world.contact_events().empty()) << "nothing of the tick is told";
   EXPECT_EQ(view(world, body).position[0], before.bodies[0].position[0]);
   ASSERT_TRUE(world.fault().has_value());
   EXPECT_EQ(world.fault()->tick, world.tick() + 1);
