@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "solver/shapes.hpp"
 #include "solver/solids/polyhedron_mass.hpp"
 #include "solver/trig.hpp"
 
@@ -174,6 +175,50 @@ void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into) {
   add_mass(shape, Polyhedra{}, density, into);
 }
 
+/// About a point of the body frame instead of its origin.
+template <int D>
+static MassProperties<D> mass_about(const Vec<D>& point, std::span<const Shape<D>> shapes,
+                                    std::span<const float> densities, const Polyhedra& hulls) {
+  MassProperties<D> properties;
+  for (std::size_t i = 0; i < shapes.size(); ++i) {
+    Shape<D> shape = shapes[i];
+    shift_shape(point, shape);
+    add_mass(shape, hulls, densities[i], properties);
+  }
+  return properties;
+}
+
+template <int D>
+static CentralMass<D> central(const MassProperties<D>& properties) {
+  return {properties.mass, (1.0f / properties.mass) * properties.first,
+          central_inertia(properties)};
+}
+
+/// Whether the moment about the origin is so much greater than that about the centre that little of
+/// that is left in it.
+template <int D>
+static bool is_drowned(const CentralMass<D>& of) {
+  constexpr float kMuch = 100.0f;
+  constexpr int kSpin = Dim<D>::kSpin;
+  float least = of.inertia.m[0];
+  for (int i = 1; i < kSpin; ++i) least = min(least, of.inertia.m[i * kSpin + i]);
+  return !(of.mass * dot(of.centre, of.centre) <= kMuch * least);
+}
+
+template <int D>
+CentralMass<D> central_mass(std::span<const Shape<D>> shapes, std::span<const float> densities,
+                            const Polyhedra& hulls) {
+  const MassProperties<D> about_origin = mass_about(Vec<D>::zero(), shapes, densities, hulls);
+  if (!(about_origin.mass > 0.0f)) return {};
+  const CentralMass<D> found = central(about_origin);
+  if (!is_drowned(found)) return found;
+  const MassProperties<D> about_centre = mass_about(found.centre, shapes, densities, hulls);
+  if (!(about_centre.mass > 0.0f)) return found;
+  CentralMass<D> moved = central(about_centre);
+  moved.centre += found.centre;
+  return moved;
+}
+
 /// Brings the largest moment to between 1/2 and 1 without rounding, so that a determinant, its
 /// third power, neither underflows nor overflows.
 static float scale_to_one(const Inertia<3>& inertia) {
@@ -189,8 +234,11 @@ static float scale_to_one(const Inertia<3>& inertia) {
 Inertia<3> inverse(const Inertia<3>& inertia) {
   const float scale = scale_to_one(inertia);
   const Eigen::Matrix3f matrix = scale * Eigen::Map<const Eigen::Matrix3f>(inertia.m);
+  const bool is_positive = matrix(0, 0) > 0.0f &&
+                           matrix(0, 0) * matrix(1, 1) - matrix(0, 1) * matrix(1, 0) > 0.0f &&
+                           matrix.determinant() > 0.0f;
   Inertia<3> result{};
-  if (matrix.determinant() > 0.0f) Eigen::Map<Eigen::Matrix3f>(result.m) = scale * matrix.inverse();
+  if (is_positive) Eigen::Map<Eigen::Matrix3f>(result.m) = scale * matrix.inverse();
   return result;
 }
 
@@ -198,6 +246,10 @@ template void add_mass(const Shape<2>&, const Polyhedra&, float, MassProperties<
 template void add_mass(const Shape<3>&, const Polyhedra&, float, MassProperties<3>&);
 template void add_mass(const Shape<2>&, float, MassProperties<2>&);
 template void add_mass(const Shape<3>&, float, MassProperties<3>&);
+template CentralMass<2> central_mass(std::span<const Shape<2>>, std::span<const float>,
+                                     const Polyhedra&);
+template CentralMass<3> central_mass(std::span<const Shape<3>>, std::span<const float>,
+                                     const Polyhedra&);
 template Inertia<2> central_inertia(const MassProperties<2>&);
 template Inertia<3> central_inertia(const MassProperties<3>&);
 

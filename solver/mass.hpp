@@ -1,5 +1,7 @@
 #pragma once
 
+#include <span>
+
 #include "solver/definitions.hpp"
 #include "solver/state.hpp"
 
@@ -30,6 +32,21 @@ void add_mass(const Shape<D>& shape, float density, MassProperties<D>& into);
 /// 5e-7 (d / s)^2: 5e-5 at ten times their size, 5e-3 at a hundred times.
 template <int D>
 Inertia<D> central_inertia(const MassProperties<D>& properties);
+
+/// Mass of shapes together, their centre in the body frame, and the moment about it.
+template <int D>
+struct CentralMass {
+  float mass = 0.0f;  ///< kg; where it is 0, so is the rest.
+  Vec<D> centre = Vec<D>::zero();
+  Inertia<D> inertia{};
+};
+
+/// Of all shapes of a body, each with its density. Wherever they lie, the moment has an error of
+/// 5e-5 at most: what lies farther than ten times its size from the origin is taken about its own
+/// centre from the start.
+template <int D>
+CentralMass<D> central_mass(std::span<const Shape<D>> shapes, std::span<const float> densities,
+                            const Polyhedra& hulls);
 
 /// The inverse, or zero where there is none. Moments from 1e-30 to 1e30 kg m^2 have one.
 inline Inertia<2> inverse(const Inertia<2>& inertia) {

@@ -12,7 +12,7 @@ namespace cycloid::solver {
 
 /// All that depends on where the bodies are now, and on the time.
 template <int D, int W>
-static void evaluate(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+static void evaluate(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                      Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   evaluate_contacts<D, W>(lot, workers, scratch);
   evaluate_joints(context, state, time_s, workers, scratch);
@@ -22,7 +22,7 @@ static void evaluate(const StepContext<D>& context, const WorldState<D>& state, 
 /// The velocity methods: impulses first, then positions by velocities, then what the method does
 /// about the errors that are left. @pre rows are those of the present poses; so they are after it.
 template <int D, int W>
-static void solve_substep(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+static void solve_substep(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                           const Tracer<D>& traced, Lot& lot, Workers& workers,
                           StepScratch<D>& scratch) {
   const Tuning& tuning = context.tuning;
@@ -64,7 +64,7 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
                            Tracer<D> traced, Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   // Signed, because 32-bit x86 turns large unsigned numbers into floats by x87 additions.
   const auto tick = static_cast<std::int64_t>(state.header.tick);
-  const float start_s = static_cast<float>(tick) * context.tick_s;
+  const Wide start_s = static_cast<Wide>(tick) * static_cast<Wide>(context.tick_s);
   if (context.tuning.stabilisation != Stabilisation::kXpbd) {
     evaluate<D, W>(context, state, start_s, lot, workers, scratch);
     traced(Phase::kEvaluate);
@@ -74,7 +74,7 @@ static void solve_substeps(const StepContext<D>& context, const WorldState<D>& s
     now.is_first = substep == 0;
     // Islands that have all take back what leans; in one order they stay at rest for longer.
     now.odd = (tick + substep) % 2 != 0;
-    const float time_s = start_s + static_cast<float>(substep + 1) * context.h;
+    const Wide time_s = start_s + static_cast<Wide>(substep + 1) * static_cast<Wide>(context.h);
     traced.substep = substep;
     if (context.tuning.stabilisation == Stabilisation::kXpbd) {
       project_positions<D, W>(now, state, time_s, lot, workers, scratch);

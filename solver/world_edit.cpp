@@ -28,19 +28,22 @@ static Error set_mass_properties(const BodyDef<D>& def, std::span<const ShapeDef
                                  const std::vector<int>& def_of, Body<D>& body) {
   body.local_center = Vec<D>::zero();
   if (!is_movable<D>(def.kind)) return {};
-  MassProperties<D> properties;
-  // A stated mass is spread over the shapes by their volume where no density says otherwise.
-  for (std::size_t i = 0; i < shapes.size(); ++i)
-    add_mass(shapes[i], hulls, defs[static_cast<std::size_t>(def_of[i])].density, properties);
+  std::vector<float> densities;
+  for (const int i : def_of) densities.push_back(defs[static_cast<std::size_t>(i)].density);
+  const CentralMass<D> shaped = central_mass<D>(shapes, densities, hulls);
   const bool stated = def.mass != 0.0f;
-  if (!stated && !within(properties.mass, kMassMin, kMassMax)) return {Code::kInvalid, "mass"};
-  body.mass = stated ? def.mass : properties.mass;
+  if (!stated && !within(shaped.mass, kMassMin, kMassMax)) return {Code::kInvalid, "mass"};
+  // A stated mass is spread over the shapes by their volume where no density says otherwise. What
+  // that comes to by itself may be far less, or more, than any mass may be.
+  constexpr float kShapedMin = 1.0e-25f;
+  constexpr float kShapedMax = 1.0e25f;
+  body.mass = stated ? def.mass : shaped.mass;
   body.inverse_mass = 1.0f / body.mass;
-  if (!within(properties.mass, kMassMin, kMassMax)) return {};
-  body.local_center = (1.0f / properties.mass) * properties.first;
+  if (!within(shaped.mass, kShapedMin, kShapedMax)) return {};
+  body.local_center = shaped.centre;
   if (def.kind == BodyKind::kParticle) return {};
-  body.inertia = central_inertia(properties);
-  for (float& moment : body.inertia.m) moment *= body.mass / properties.mass;
+  body.inertia = shaped.inertia;
+  for (float& moment : body.inertia.m) moment *= body.mass / shaped.mass;
   if (!def.fixed_rotation) body.inverse_inertia = inverse(body.inertia);
   return {};
 }

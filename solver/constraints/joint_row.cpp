@@ -65,7 +65,7 @@ static bool limit_is_near(const JointRow<D>& row, const Motion<D>& a, const Moti
 }
 
 template <int D>
-void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a, const Motion<D>& b,
+void evaluate_rows(const WorldState<D>& state, Wide time_s, const Motion<D>& a, const Motion<D>& b,
                    JointRow<D>& row) {
   const Body<D>& body_a = state.bodies[row.body_a];
   const Body<D>& body_b = state.bodies[row.body_b];
@@ -73,7 +73,7 @@ void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a,
       make_frame(state, state.joints[row.joint], body_a.position + a.delta_position,
                  row.centre_offset + (b.delta_position - a.delta_position),
                  compose(a.delta_rotation, body_a.rotation),
-                 compose(b.delta_rotation, body_b.rotation), time_s);
+                 compose(b.delta_rotation, body_b.rotation), static_cast<float>(time_s));
   row.rows.clear();
   // A user's function may count on rows of zeros.
   if (frame.joint.kind == JointKind::kUser) row.rows.rows.fill(Row<D>{});
@@ -88,9 +88,9 @@ void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a,
   if (row.limit_near) hold_cone(row);
 }
 
-template void evaluate_rows(const WorldState<2>&, float, const Motion<2>&, const Motion<2>&,
+template void evaluate_rows(const WorldState<2>&, Wide, const Motion<2>&, const Motion<2>&,
                             JointRow<2>&);
-template void evaluate_rows(const WorldState<3>&, float, const Motion<3>&, const Motion<3>&,
+template void evaluate_rows(const WorldState<3>&, Wide, const Motion<3>&, const Motion<3>&,
                             JointRow<3>&);
 
 }  // namespace cycloid::solver

@@ -5,6 +5,7 @@
 #include "solver/constraints/block.hpp"
 #include "solver/constraints/joint_bounds.hpp"
 #include "solver/constraints/rows.hpp"
+#include "solver/direct/wide.hpp"
 #include "solver/motion.hpp"
 #include "solver/step_context.hpp"
 
@@ -213,7 +214,7 @@ void write_back(const JointRow<D>& row, const Motion<D>& a, const Motion<D>& b,
 
 /// Rows and effective masses at the poses of `a` and `b`: once wherever positions have moved.
 template <int D>
-void evaluate_rows(const WorldState<D>& state, float time_s, const Motion<D>& a, const Motion<D>& b,
+void evaluate_rows(const WorldState<D>& state, Wide time_s, const Motion<D>& a, const Motion<D>& b,
                    JointRow<D>& row);
 
 }  // namespace cycloid::solver

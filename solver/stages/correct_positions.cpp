@@ -8,7 +8,7 @@ namespace cycloid::solver {
 ///
 /// Reads masses, arms and joints; writes deltas. Colour after colour (for_each_by_color).
 template <int D, int W>
-void correct_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+void correct_positions(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                        const Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   const std::span<Motion<D>> motions = scratch.motions;
   for_each_by_color(scratch.joint_coloring, workers, [&](int i) {

@@ -7,13 +7,13 @@ namespace cycloid::solver {
 /// A driven target: x(t) = target + A sin(2 pi f t), and its speed, so that a position motor
 /// follows C(x, t) without lag.
 template <int D>
-static void drive_target(const Joint<D>& joint, float time_s, JointRow<D>& row) {
+static void drive_target(const Joint<D>& joint, Wide time_s, JointRow<D>& row) {
   if (!row.motor_holds_position || joint.drive_amplitude == 0.0f) return;
   float sine = 0.0f;
   float cosine = 0.0f;
   // Only the phase within a period, so that late ticks keep their digits.
-  const float turns = joint.drive_hertz * time_s;
-  const float phase = turns - static_cast<float>(static_cast<long long>(turns));
+  const Wide turns = static_cast<Wide>(joint.drive_hertz) * time_s;
+  const auto phase = static_cast<float>(turns - static_cast<Wide>(static_cast<long long>(turns)));
   sin_cos(2.0f * kPi * phase, sine, cosine);
   row.spring_rest = joint.target + joint.drive_amplitude * sine;
   row.target_rate = joint.drive_amplitude * 2.0f * kPi * joint.drive_hertz * cosine;
@@ -40,7 +40,7 @@ static void follow_inertia(const StepScratch<D>& scratch, Range range, PinBlocks
 /// Reads joints, poses, deltas and masses; writes pins and joint rows, each its own, so any split
 /// into ranges gives the same bits.
 template <int D>
-void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                      Workers& workers, StepScratch<D>& scratch) {
   if (scratch.joint_rows.empty()) return;
   with_blocks(scratch.pins, [&]<int W>(PinBlocks<D, W>& pins) {
@@ -62,9 +62,9 @@ void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, 
   });
 }
 
-template void evaluate_joints(const StepContext<2>&, const WorldState<2>&, float, Workers&,
+template void evaluate_joints(const StepContext<2>&, const WorldState<2>&, Wide, Workers&,
                               StepScratch<2>&);
-template void evaluate_joints(const StepContext<3>&, const WorldState<3>&, float, Workers&,
+template void evaluate_joints(const StepContext<3>&, const WorldState<3>&, Wide, Workers&,
                               StepScratch<3>&);
 
 }  // namespace cycloid::solver

@@ -41,7 +41,7 @@ static void drive_joints(const StepContext<D>& context, StepScratch<D>& scratch)
 /// Source: Mueller et al., "Detailed Rigid Body Simulation with XPBD" (SCA 2020). We deviate:
 /// springs and motors stay velocity rows, and an overlap leaves at push_speed_max at most.
 template <int D, int W>
-void project_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+void project_positions(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                        Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   const std::span<Motion<D>> motions = scratch.motions;
   integrate_velocities(context, lot, workers, scratch);

@@ -81,7 +81,7 @@ template <int D, int W>
 void bounce_contacts(const StepContext<D>& context, const Lot& lot, Workers& workers,
                      StepScratch<D>& scratch);
 template <int D>
-void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                      Workers& workers, StepScratch<D>& scratch);
 template <int D>
 void factor_trees(const StepContext<D>& context, StepScratch<D>& scratch);
@@ -142,10 +142,10 @@ template <int D, int W>
 void solve_pseudo_velocities(const StepContext<D>& context, const Lot& lot, Workers& workers,
                              StepScratch<D>& scratch);
 template <int D, int W>
-void correct_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+void correct_positions(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                        const Lot& lot, Workers& workers, StepScratch<D>& scratch);
 template <int D, int W>
-void project_positions(const StepContext<D>& context, const WorldState<D>& state, float time_s,
+void project_positions(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                        Lot& lot, Workers& workers, StepScratch<D>& scratch);
 
 template <int D, int W>

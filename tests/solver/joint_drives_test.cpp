@@ -103,8 +103,8 @@ TEST(PositionMotor, HoldsAnAngleAgainstAnUnbalancedWeight) {
   }
 }
 
-/// The largest lag behind target + A sin(2 pi f t) after two seconds.
-static double drive_error(const Method& method, float tick_s) {
+/// The largest lag behind target + A sin(2 pi f t) after two seconds of a world of that tick.
+static double drive_error(const Method& method, float tick_s, std::uint64_t begin = 0) {
   WorldDef<2> world_def;
   world_def.tick_s = tick_s;
   world_def.tuning = method.tuning;
@@ -122,16 +122,28 @@ static double drive_error(const Method& method, float tick_s) {
   def.drive_amplitude = 0.5f;
   def.drive_hertz = 1.0f;
   EXPECT_TRUE(world.create_joint(def).ok());
+  WorldState<2> state;
+  world.save(state);
+  state.header.tick = begin;
+  world.restore(state);
   double worst = 0.0;
   const int ticks_per_s = static_cast<int>(std::lround(1.0f / tick_s));
   for (int tick = 1; tick <= 4 * ticks_per_s; ++tick) {
     step(world, 1);
     if (tick < 2 * ticks_per_s) continue;
-    const double t = double{tick_s} * tick;
+    const double t = double{tick_s} * static_cast<double>(world.tick());
     const double wanted = 0.2 + 0.5 * std::sin(6.283185307179586 * t);
     worst = std::max(worst, std::abs(view(world, def.body_b).position[0] - wanted));
   }
   return worst;
+}
+
+TEST(PositionMotor, FollowsASineAsWellAfterTenDays) {
+  constexpr std::uint64_t kTenDays = 60ull * 3600 * 240;
+  for (const Method& method : methods()) {
+    const double begin = drive_error(method, 1.0f / 60.0f);
+    EXPECT_NEAR(drive_error(method, 1.0f / 60.0f, kTenDays), begin, 0.01 * begin) << method.name;
+  }
 }
 
 TEST(PositionMotor, FollowsASineWithAnErrorThatHalvesWithTheStep) {

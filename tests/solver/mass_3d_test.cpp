@@ -36,6 +36,54 @@ static void expect_moments(const MassProperties<3>& properties, double mass, con
           << i << " " << j;
 }
 
+/// A ball beside a body's origin: 2/5 m r^2 in space, 1/2 m r^2 in the plane.
+template <int D>
+static void expect_moment_of_ball(const Vec<D>& place, float radius) {
+  World<D> world = make_world<D>();
+  ShapeDef<D> shape = ball<D>(radius);
+  shape.density = 1000.0f;
+  shape.points = {place};
+  const BodyId id = add_at<D>(world, Vec<D>::zero(), shape);
+  const Body<D>& body = world.state().bodies[id.index];
+  const float moment = (Dim<D>::kSpin == 1 ? 0.5f : 0.4f) * body.mass * radius * radius;
+  const float slack = 1.0e-3f;
+  for (int i = 0; i < Dim<D>::kSpin; ++i)
+    for (int j = 0; j < Dim<D>::kSpin; ++j)
+      EXPECT_NEAR(body.inverse_inertia.m[i * Dim<D>::kSpin + j] * moment, i == j ? 1.0f : 0.0f,
+                  slack)
+          << "at " << place[0] << ", radius " << radius;
+  for (int i = 0; i < D; ++i)
+    EXPECT_NEAR(body.local_center[i], place[i], 1.0e-4f * radius + 1e-7f * length(place));
+}
+
+TEST(MassOfBody, IsExactHoweverFarItsShapesLieFromItsOrigin) {
+  for (const float far : {0.0f, 1.0f, 10.0f, 50.0f, 200.0f, 1000.0f})
+    for (const float radius : {0.05f, 0.5f}) {
+      expect_moment_of_ball<2>({{far, -0.7f * far}}, radius);
+      expect_moment_of_ball<3>({{far, -0.7f * far, 0.3f * far}}, radius);
+    }
+}
+
+TEST(MassOfBody, IsSpreadOverShapesOfAnySizeWhereItIsStated) {
+  for (const float radius : {1.0e-4f, 5.0e-4f, 1.0f}) {
+    World<3> world = make_world<3>();
+    BodyDef<3> def;
+    def.mass = 0.001f;
+    ShapeDef<3> shape = ball<3>(radius);
+    shape.points = {{{0.5f, 0.0f, 0.0f}}};
+    const Body<3>& body = world.state().bodies[add<3>(world, def, shape).index];
+    EXPECT_NEAR(body.inverse_inertia.m[0] * 0.4f * 0.001f * radius * radius, 1.0f, 1.0e-3f)
+        << radius;
+    EXPECT_NEAR(body.local_center[0], 0.5f, 1.0e-6f);
+  }
+}
+
+TEST(MassOfBody, HasNoInverseWhereAMomentIsNotPositive) {
+  EXPECT_EQ(inverse(Inertia<3>{{1, 0, 0, 0, -1, 0, 0, 0, -1}}).m[0], 0.0f) << "its determinant is";
+  EXPECT_EQ(inverse(Inertia<3>{{-1, 0, 0, 0, 1, 0, 0, 0, -1}}).m[4], 0.0f);
+  EXPECT_EQ(inverse(Inertia<3>{{2, 0, 0, 0, 4, 0, 0, 0, 8}}).m[4], 0.25f);
+}
+
 TEST(MassOfHull, IsThatOfTheBox) {
   const float x = 0.5f, y = 0.2f, z = 0.9f;
   const float mass = 3.0f * 8.0f * x * y * z;
