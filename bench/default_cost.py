@@ -19,7 +19,7 @@ from dataclasses import dataclass
 
 from instructions import collected
 
-# What the default has to hold at the cost of Soft Step, and two of what it has nothing to hold in.
+# What the default has to hold at the cost of Soft Step, and a pyramid, where nothing is loaded.
 TRIALS = (
     "heavy-on-light-1000", "stack-30", "ball-and-chain", "heavy-apexes", "400-on-thin-ground",
     "400-on-thick-ground", "joint-grid-100", "card-house", "arch", "bridge", "pyramid-20",

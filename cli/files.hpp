@@ -18,7 +18,8 @@ PathKind kind_of(const std::string& path);
 /// Folders behind links are not entered. @throws std::exception where a folder cannot be read.
 std::vector<std::string> files_below(const std::string& folder, const std::string& suffix);
 
-/// Puts a file in the place of another, at once, with the mode of that where there is one.
+/// Puts a file in the place of another, at once; with the mode of that where there is one, but for
+/// without <filesystem>.
 /// @returns why it could not.
 std::error_code replace_file(const std::string& by, const std::string& file);
 

@@ -44,6 +44,17 @@ class OperationTest : public testing::Test {
     options.rooms.push_back({"arena", two_seat_settings()});
     open(std::move(options), with_admin);
   }
+  /// @returns the folder that the room writes its logs into.
+  std::filesystem::path open_with_logs(const std::string& name) {
+    const std::filesystem::path folder =
+        testing::TempDir() + "/cycloid-" + name + "-" + std::to_string(::getpid());
+    std::filesystem::create_directories(folder);
+    HostOptions options = quiet_host(lines_);
+    options.rooms.push_back({"arena", two_seat_settings()});
+    options.rooms[0].settings.log_directory = folder;
+    open(std::move(options));
+    return folder;
+  }
   Answer get(const std::string& path) { return http(operation_->port(), "GET", path); }
   Answer post(const std::string& path, const std::string& body = "") {
     return http(operation_->port(), "POST", path, body);
@@ -330,13 +341,7 @@ TEST_F(OperationTest, ADrainWithoutADeadlineLastsAsLongAsTheHostSaysNow) {
 }
 
 TEST_F(OperationTest, ARotatedLogGoesOnInAnotherFile) {
-  const std::filesystem::path folder =
-      testing::TempDir() + "/cycloid-rotated-" + std::to_string(::getpid());
-  std::filesystem::create_directories(folder);
-  HostOptions options = quiet_host(lines_);
-  options.rooms.push_back({"arena", two_seat_settings()});
-  options.rooms[0].settings.log_directory = folder;
-  open(std::move(options));
+  const std::filesystem::path folder = open_with_logs("rotated");
   const auto tick = [&] { return server_->host().find("arena")->meters().tick.get(); };
   ASSERT_TRUE(eventually([&] { return tick() > 5; }));
   EXPECT_EQ(post("/admin/rooms/arena/rotate").status, 200);
@@ -359,13 +364,7 @@ TEST_F(OperationTest, ARotatedLogGoesOnInAnotherFile) {
 }
 
 TEST_F(OperationTest, ALogThatCannotBeRotatedForItsDiskIsAnErrorOfTheServer) {
-  const std::filesystem::path folder =
-      testing::TempDir() + "/cycloid-rotates-not-" + std::to_string(::getpid());
-  std::filesystem::create_directories(folder);
-  HostOptions options = quiet_host(lines_);
-  options.rooms.push_back({"arena", two_seat_settings()});
-  options.rooms[0].settings.log_directory = folder;
-  open(std::move(options));
+  const std::filesystem::path folder = open_with_logs("rotates-not");
   std::filesystem::remove_all(folder);
   const Answer answer = post("/admin/rooms/arena/rotate");
   EXPECT_EQ(answer.status, 500);

@@ -288,8 +288,7 @@ TEST_F(RoomBranches, SnapshotsAreBuiltOnWhatIsAcknowledgedOnceTheRewindIsHeard) 
   for (const std::uint64_t to : {60u, 30u, 45u}) {
     const std::uint64_t from = room_->tick();
     ASSERT_TRUE(room_->rewind(to));
-    play(8);  // What is on its way when it hears of it is of the branch before.
-    play(static_cast<int>(to == 45u ? 60 : 12));
+    play(20);  // What is on its way when it hears of it is of the branch before.
     EXPECT_GT(taker.baseline_tick, to);
     EXPECT_EQ(taker.baseline_tick, taker.tick - 3) << "after the rewind from " << from;
   }
