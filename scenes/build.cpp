@@ -51,9 +51,7 @@ class Builder {
 
   std::unique_ptr<Built<D>> build() {
     const std::size_t before = mistakes_.size();
-    // The first of a name counts.
-    for (std::size_t i = 0; i < scene_.materials.size(); ++i)
-      materials_.emplace(scene_.materials[i].name, static_cast<std::uint32_t>(i));
+    for (std::size_t i = 0; i < scene_.materials.size(); ++i) name_material(i);
     solver::Result<solver::World<D>> world = solver::World<D>::create(world_def());
     if (!world.ok()) {
       complain(world_path(world.error()), world.error());
@@ -103,6 +101,13 @@ class Builder {
     if (field.starts_with("limits.")) return "/limits/" + field.substr(7);
     if (field.starts_with("floating_point_")) return field;  // Of the process, not of the scene.
     return tuning_path(scene_, field);
+  }
+
+  void name_material(std::size_t i) {
+    const std::string& name = scene_.materials[i].name;
+    if (name.empty()) return;  // Shapes that name none are of the first.
+    if (!materials_.emplace(name, static_cast<std::uint32_t>(i)).second)
+      complain(at("/materials", i) + "/name", "is the name of an earlier material: '" + name + "'");
   }
 
   std::uint32_t material_index(const std::string& name) const {

@@ -123,6 +123,8 @@ TEST(Mistakes, EachIsNamedByPathAndReason) {
       {R"({"limits": {"bodies": 0}, "bodies": [{"kind": "static"}]})", "/limits/bodies", "exceeds"},
       {R"({"materials": [{"name": "m", "friction": -1}]})", "/materials/0/friction",
        "out of range"},
+      {R"({"materials": [{"name": "m"}, {"name": "n"}, {"name": "m"}]})", "/materials/2/name",
+       "earlier material"},
       {R"({"bodies": [{"mass": -1}]})", "/bodies/0/mass", "has to be positive"},
       {R"({"bodies": [{"kind": "ghost"}]})", "/bodies/0/kind", "one of static"},
       {R"({"bodies": [{"shapes": [{"radius": 0}]}]})", "/bodies/0/shapes/0/radius", "positive"},
@@ -175,6 +177,14 @@ TEST(Mistakes, AllOfAFileAreReportedAtOnce) {
   EXPECT_EQ(loaded.mistakes[0].path, "/bodies/0/mass");
   EXPECT_EQ(loaded.mistakes[1].path, "/bodies/1/shapes/0/radius");
   EXPECT_EQ(loaded.mistakes[2].path, "/gravty");
+}
+
+TEST(Materials, ShapesThatNameNoneAreOfTheFirst) {
+  const Loaded loaded = from_json(R"({"materials": [{"name": "ice"}, {"friction": 0.9}],
+      "bodies": [{"shapes": [{"radius": 1}, {"radius": 1, "material": "ice"}]}]})");
+  ASSERT_TRUE(loaded.scene);
+  const Simulation simulation = start(*loaded.scene);
+  for (const auto& shape : simulation.planar()->state().shapes) EXPECT_EQ(shape.material, 0u);
 }
 
 TEST(Mistakes, NestingHasABound) {
