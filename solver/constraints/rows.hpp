@@ -90,9 +90,18 @@ struct JointFrame {
 
 /// A function that writes rows: every kind of joint is one, and a user may register his own.
 /// It depends on the frame alone, or replays diverge; libm is not the same everywhere
-/// (solver/trig.hpp is). What it leaves alone stays as in JointRows{}.
+/// (solver/trig.hpp is). What it leaves alone stays as in JointRows{}. Where it does not leave
+/// 0 <= split <= count <= Dim<D>::kFreedoms, the joint has no rows.
 template <int D>
 using RowsFunction = void (*)(const JointFrame<D>& frame, JointRows<D>& rows);
+
+/// Has a joint's function write its rows. Behind this nobody asks whether their counts are in
+/// bounds. @pre rows are cleared.
+template <int D>
+void write_rows(RowsFunction<D> function, const JointFrame<D>& frame, JointRows<D>& rows) {
+  function(frame, rows);
+  if (rows.split < 0 || rows.split > rows.count || rows.count > Dim<D>::kFreedoms) rows.drop();
+}
 
 /// @param centre_offset  centre of b from centre of a: kept apart from the positions because far
 /// from the origin their difference has no digits left.

@@ -113,6 +113,32 @@ TEST(UserConstraint, IsRefusedBeforeItsFunctionIsRegistered) {
   EXPECT_NE(scene.world.digest(), before);
 }
 
+/// Leaves the first two parameters as its counts.
+static void counted_rows(const JointFrame<2>& frame, JointRows<2>& rows) {
+  rows.rows[0] = translation_row(frame, Vec<2>{{0.0f, 1.0f}});
+  rows.count = static_cast<int>(frame.joint.parameters[0]);
+  rows.split = static_cast<int>(frame.joint.parameters[1]);
+}
+
+TEST(UserConstraint, CountsThatCannotBeAreNoRows) {
+  const auto height_with = [](float count, float split) {
+    Scene<2> scene(Tuning{});
+    scene.world.register_constraint(kParabola, &counted_rows);
+    const BodyId bead = scene.add_ball({{1.0f, 0.5f}}, 2.0f, 0.05f);
+    JointDef<2> def = user_joint(scene, bead, kParabola);
+    def.parameters = {count, split, 0.0f, 0.0f};
+    scene.create(def);
+    step(scene.world, 10);
+    return view(scene.world, bead).position[1];
+  };
+  const float falling = height_with(0.0f, 0.0f);
+  EXPECT_NE(height_with(1.0f, 1.0f), falling);
+  EXPECT_EQ(height_with(1.0f, 5.0f), falling);
+  EXPECT_EQ(height_with(99.0f, 1.0f), falling);
+  EXPECT_EQ(height_with(99.0f, 99.0f), falling);
+  EXPECT_EQ(height_with(1.0f, -1.0f), falling);
+}
+
 TEST(UserConstraint, KindAndParametersAreInTheDigest) {
   std::vector<std::uint64_t> digests;
   for (const float parameter : {1.0f, 2.0f})
