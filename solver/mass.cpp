@@ -2,6 +2,7 @@
 
 #include <Eigen/LU>
 
+#include "solver/direct/wide.hpp"
 #include "solver/shapes.hpp"
 #include "solver/solids/polyhedron_mass.hpp"
 #include "solver/trig.hpp"
@@ -217,6 +218,24 @@ CentralMass<D> central_mass(std::span<const Shape<D>> shapes, std::span<const fl
   CentralMass<D> moved = central(about_centre);
   moved.centre += found.centre;
   return moved;
+}
+
+Inertia<3> thickened(const Inertia<3>& inertia) {
+  constexpr Wide kThinnest = 1.0e-5;
+  const auto at = [&](int i, int j) { return static_cast<Wide>(inertia.m[i * 3 + j]); };
+  const auto minor = [&](int i, int j) { return at(i, i) * at(j, j) - at(i, j) * at(j, i); };
+  const Wide trace = at(0, 0) + at(1, 1) + at(2, 2);
+  const Wide minors = minor(0, 1) + minor(1, 2) + minor(2, 0);
+  const Wide determinant = at(0, 0) * minor(1, 2) -
+                           at(0, 1) * (at(1, 0) * at(2, 2) - at(1, 2) * at(2, 0)) +
+                           at(0, 2) * (at(1, 0) * at(2, 1) - at(1, 1) * at(2, 0));
+  // Where one is small, the others are half the trace each, and it is determinant / minors.
+  const Wide least = 0.5 * kThinnest * trace;
+  if (!(determinant < least * minors)) return inertia;
+  const auto missing = static_cast<float>(least - determinant / minors);
+  Inertia<3> thicker = inertia;
+  for (int i = 0; i < 3; ++i) thicker.m[4 * i] += missing;
+  return thicker;
 }
 
 /// Brings the largest moment to between 1/2 and 1 without rounding, so that a determinant, its

@@ -48,6 +48,14 @@ template <int D>
 CentralMass<D> central_mass(std::span<const Shape<D>> shapes, std::span<const float> densities,
                             const Polyhedra& hulls);
 
+/// The same, with what the least principal moment lacks to 1e-5 of the greatest added about every
+/// axis. Moments of the world are rounded to 6e-8 of the greatest, in which one a million times
+/// smaller drowns: a wire of two metres and a millimetre then gains energy from every touch.
+inline Inertia<2> thickened(const Inertia<2>& inertia) {
+  return inertia;
+}
+Inertia<3> thickened(const Inertia<3>& inertia);
+
 /// The inverse, or zero where there is none. Moments from 1e-30 to 1e30 kg m^2 have one.
 inline Inertia<2> inverse(const Inertia<2>& inertia) {
   return {{inertia.m[0] > 0.0f ? 1.0f / inertia.m[0] : 0.0f}};

@@ -42,7 +42,7 @@ static Error set_mass_properties(const BodyDef<D>& def, std::span<const ShapeDef
   if (!within(shaped.mass, kShapedMin, kShapedMax)) return {};
   body.local_center = shaped.centre;
   if (def.kind == BodyKind::kParticle) return {};
-  body.inertia = shaped.inertia;
+  body.inertia = thickened(shaped.inertia);
   for (float& moment : body.inertia.m) moment *= body.mass / shaped.mass;
   if (!def.fixed_rotation) body.inverse_inertia = inverse(body.inertia);
   return {};

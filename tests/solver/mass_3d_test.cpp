@@ -84,6 +84,17 @@ TEST(MassOfBody, HasNoInverseWhereAMomentIsNotPositive) {
   EXPECT_EQ(inverse(Inertia<3>{{2, 0, 0, 0, 4, 0, 0, 0, 8}}).m[4], 0.25f);
 }
 
+TEST(ThickenedInertia, RaisesTheLeastMomentAndOnlyWhereItDrowns) {
+  const Inertia<3> thick = {{1, 0, 0, 0, 1, 0, 0, 0, 3.0e-5f}};
+  const Inertia<3> same = thickened(thick);
+  for (int i = 0; i < 9; ++i) EXPECT_EQ(same.m[i], thick.m[i]);
+  EXPECT_NEAR(thickened(Inertia<3>{{1, 0, 0, 0, 1, 0, 0, 0, 1.0e-8f}}).m[8], 1.0e-5f, 1.0e-7f);
+  // Across the first two axes: what little there is about the rod is lost in the others' digits.
+  const Inertia<3> slanted = thickened(Inertia<3>{{0.5f, -0.5f, 0, -0.5f, 0.5f, 0, 0, 0, 1}});
+  EXPECT_NEAR(slanted.m[0] + slanted.m[1], 1.0e-5f, 1.0e-6f);
+  EXPECT_GT(inverse(slanted).m[0], 0.0f);
+}
+
 TEST(MassOfHull, IsThatOfTheBox) {
   const float x = 0.5f, y = 0.2f, z = 0.9f;
   const float mass = 3.0f * 8.0f * x * y * z;
