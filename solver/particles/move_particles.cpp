@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "solver/particles/shape_distance.hpp"
+#include "solver/validate.hpp"
 
 namespace cycloid::solver {
 
@@ -233,6 +234,13 @@ static void move_substep(float h, const Vec<D>& gravity, const ParticleTuning& t
   }
 }
 
+/// What is held goes wherever its body is put, and what it is linked to follows: farther in a tick
+/// than anything may move by itself. Nothing that is no number becomes one.
+static float held_to(float bound, float speed) {
+  if (speed > bound) return bound;
+  return speed < -bound ? -bound : speed;
+}
+
 template <int D>
 void move_particles(float tick_s, const Vec<D>& gravity, const ParticleTuning& tuning,
                     const WorldState<D>& state, std::span<Particle<D>> particles,
@@ -244,8 +252,11 @@ void move_particles(float tick_s, const Vec<D>& gravity, const ParticleTuning& t
   for (std::uint32_t done = 0; done < tuning.substeps; ++done)
     move_substep(h, gravity, tuning, static_cast<float>(tuning.substeps - done), state, particles,
                  links, scratch);
-  for (std::size_t i = 0; i < particles.size(); ++i)
-    if (particles[i].kind != 0) particles[i].position += scratch.motions[i].offset;
+  for (std::size_t i = 0; i < particles.size(); ++i) {
+    if (particles[i].kind == 0) continue;
+    particles[i].position += scratch.motions[i].offset;
+    for (float& speed : particles[i].velocity.v) speed = held_to(kSpeedMax, speed);
+  }
 }
 
 template void move_particles(float, const Vec<2>&, const ParticleTuning&, const WorldState<2>&,

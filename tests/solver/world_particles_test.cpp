@@ -173,6 +173,19 @@ TEST(WorldParticles, OneThatLeavesTheBoundsFaultsTheWorldAndUndoesTheTick) {
 
 // An over-constrained net of pins: loops without end, heavy, fixed at two corners. Whatever the
 // method, impulses stay bounded, or the world says in which tick they did not.
+// Farther in one tick than anything may move by itself.
+TEST(WorldParticles, OneThatIsHeldGoesWhereverItsBodyIsPut) {
+  Rope rope(5);
+  step(rope.world, 10);
+  const Vec<2> away = {{4000.0f, 3000.0f}};
+  ASSERT_TRUE(rope.world.set_pose(rope.post, away, identity_rotation<2>()).ok());
+  step(rope.world, 1);
+  const Particle<2>& held = rope.world.state().particles[rope.particles[0].index];
+  EXPECT_NEAR(length(held.position - away), 0.0f, 1.0e-3f);
+  step(rope.world, 600);
+  EXPECT_LT(length(rope.world.state().particles[rope.particles[4].index].position - away), 1.0f);
+}
+
 TEST(Overconstrained, AGridOfPinsStaysBoundedOrFaultsByName) {
   const auto run = [](const Tuning& tuning, float& fastest) {
     WorldDef<2> def = with_gravity<2>();
