@@ -41,27 +41,50 @@ Exit show(const std::string& file, bool json) {
 
 /// What this build makes of the tick of a report.
 struct Repeated {
-  std::uint64_t from_tick = 0;  ///< Of the state that the log begins with.
+  std::uint64_t from_tick = 0;  ///< Of the state of the server's with which it begins.
   std::string digest;           ///< After the report's tick.
+  /// The first before the report's that comes out otherwise than recorded: from there on it is
+  /// another match.
+  std::optional<std::uint64_t> parted_tick;
 };
 
-/// Steps the cut log from its first state to the tick.
+/// Steps the cut log to the tick, from its last state before: the client's build need not come to
+/// that state by itself.
 Repeated repeat_log(const std::string& file, std::uint64_t tick) {
   const LoadedLog loaded = load_log(file);
   if (tick < loaded.first_tick() || tick > loaded.last_tick())
     throw Failure(kExitCorrupt, file + ": has no tick " + std::to_string(tick));
-  scenes::Simulation simulation = first_state(loaded, 1);
+  scenes::Simulation simulation = keyframe_state(loaded, tick - 1);
+  Repeated repeated;
+  repeated.from_tick = simulation.tick();
   TickReader reader(loaded);
   std::vector<scenes::SeatInput> inputs;
-  for (std::uint64_t now = loaded.first_tick(); now <= tick; ++now) {
+  for (std::uint64_t now = repeated.from_tick + 1; now <= tick; ++now) {
+    const protocol::LogTick& recorded = reader.at(now);
     inputs.clear();
-    for (const protocol::SeatFrame& seat : reader.at(now).frame.seats) inputs.push_back(seat.input);
+    for (const protocol::SeatFrame& seat : recorded.frame.seats) inputs.push_back(seat.input);
     const solver::Error error = simulation.step(inputs);
-    if (error.ok()) continue;
-    throw Failure(kExitDiverged, file + ": the world does not step to tick " + std::to_string(now) +
-                                     ": " + error_text(error));
+    if (!error.ok()) {
+      throw Failure(kExitDiverged, file + ": the world does not step to tick " +
+                                       std::to_string(now) + ": " + error_text(error));
+    }
+    const bool parts = now < tick && simulation.digest() != recorded.digest;
+    if (parts && !repeated.parted_tick) repeated.parted_tick = now;
   }
-  return {loaded.first_tick() - 1, hex16(simulation.digest())};
+  repeated.digest = hex16(simulation.digest());
+  return repeated;
+}
+
+/// With whom this build agrees, and what to do where that is not the server.
+void print_agreement(const Repeated& repeated, const std::string& agrees, const std::string& log) {
+  std::cout << "this build agrees with " << (agrees == "neither" ? "" : "the ") << agrees;
+  if (agrees == "neither" && repeated.parted_tick)
+    std::cout << ": it leaves the recorded match at tick " << *repeated.parted_tick << " already";
+  if (agrees != "server") {
+    std::cout << "; to go on: cycloid bisect " << log
+              << " --against PROGRAM, with the server's cycloid";
+  }
+  std::cout << '\n';
 }
 
 Exit repeat(const std::string& file, bool json) {
@@ -84,6 +107,7 @@ Exit repeat(const std::string& file, bool json) {
   if (json) {
     print_json({{"tick", tick},
                 {"from_tick", repeated.from_tick},
+                {"parted_tick", repeated.parted_tick ? Json(*repeated.parted_tick) : Json()},
                 {"digest", repeated.digest},
                 {"server", server},
                 {"client", client},
@@ -94,14 +118,7 @@ Exit repeat(const std::string& file, bool json) {
   std::cout << "tick " << tick << ", made again from tick " << repeated.from_tick << ":\n  "
             << repeated.digest << "  this program\n  " << server << "  the server\n  " << client
             << "  the client\n";
-  if (repeated.digest == server) {
-    std::cout << "this build agrees with the server\n";
-  } else if (repeated.digest == client) {
-    std::cout << "this build agrees with the client; to go on: cycloid bisect " << log
-              << " --against PROGRAM, with the server's cycloid\n";
-  } else {
-    std::cout << "this build agrees with neither\n";
-  }
+  print_agreement(repeated, agrees, log);
   return exit;
 }
 

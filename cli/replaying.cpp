@@ -126,6 +126,12 @@ scenes::Simulation first_state(const LoadedLog& loaded, int workers, int lanes) 
   return simulation;
 }
 
+scenes::Simulation keyframe_state(const LoadedLog& loaded, std::uint64_t tick) {
+  scenes::Simulation simulation = make_simulation(loaded.scene, 1);
+  (void)begin_at(loaded, tick, simulation);
+  return simulation;
+}
+
 std::string error_text(const solver::Error& error) {
   return std::string(solver::code_name(error.code)) + " " + error.field;
 }

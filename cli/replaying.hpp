@@ -68,6 +68,8 @@ void take_keyframe(const std::string& file, const protocol::LogKeyframe& keyfram
 
 /// The state in which a log begins: of its scene, or of its first keyframe.
 scenes::Simulation first_state(const LoadedLog& loaded, int workers, int lanes = kLanesDefault);
+/// That of the last keyframe not after `tick`, or else the one in which the log begins.
+scenes::Simulation keyframe_state(const LoadedLog& loaded, std::uint64_t tick);
 
 /// What a step that failed means: "kFaulted position".
 std::string error_text(const solver::Error& error);

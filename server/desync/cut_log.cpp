@@ -12,7 +12,8 @@ static std::vector<protocol::SeatFrame> seats_before(const Finding& finding) {
   return std::vector<protocol::SeatFrame>(finding.room->scene->seats.size());
 }
 
-protocol::Bytes cut_log(const Finding& finding, std::string& error) {
+protocol::Bytes cut_log(const Finding& finding, const std::optional<KeptState>& before,
+                        std::string& error) {
   protocol::Bytes bytes;
   const bool reaches = !finding.ticks.empty() && finding.ticks.back().frame.tick >= finding.tick;
   if (!finding.start || !reaches) {
@@ -39,6 +40,8 @@ protocol::Bytes cut_log(const Finding& finding, std::string& error) {
     if (tick.frame.tick != encoder.next_tick()) continue;
     encoder.tick(tick, bytes);
     digest = tick.digest;
+    if (before && before->tick == tick.frame.tick)
+      encoder.keyframe(before->digest, *before->state, bytes);
   }
   encoder.footer({encoder.next_tick() - 1, digest, {}}, bytes);
   return bytes;

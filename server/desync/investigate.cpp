@@ -1,5 +1,6 @@
 #include <algorithm>
 #include <bit>
+#include <memory>
 #include <utility>
 
 #include "protocol/text.hpp"
@@ -102,7 +103,7 @@ class Investigation {
     if (simulation_->digest() != finding_.start->digest) parted_tick_ = finding_.start->tick;
     for (const protocol::LogTick& tick : finding_.ticks) {
       if (tick.frame.tick != simulation_->tick() + 1) continue;
-      if (tick.frame.tick == finding_.tick) simulation_->save(before_);
+      if (tick.frame.tick == finding_.tick) keep_before();
       if (tick.frame.tick > finding_.tick && !wants_later(tick.frame.tick)) break;
       if (const solver::Error error = simulation_->step(inputs(tick.frame.tick)); !error.ok())
         return give_up("the world does not step again: " + error_words(error));
@@ -117,6 +118,14 @@ class Investigation {
     }
     if (!report_.remade_digest) return give_up("the frames up to the tick are not kept any more");
     return true;
+  }
+  /// The state is the server's own only where its digests have been those of its steps so far.
+  void keep_before() {
+    simulation_->save(before_);
+    if (parted_tick_) return;
+    auto state = std::make_shared<std::vector<std::byte>>();
+    simulation_->encode(*state);
+    report_.before = KeptState{simulation_->tick(), simulation_->digest(), std::move(state)};
   }
   bool wants_later(std::uint64_t tick) const {
     return parted_tick_ && finding_.later && tick <= finding_.later->tick;

@@ -32,6 +32,8 @@ struct DesyncReport {
   /// Of the same tick, made again from a state of the server's; none where it could not be.
   std::optional<std::uint64_t> remade_digest;
   std::uint64_t remade_from_tick = 0;
+  /// Of the server after the tick before `tick`, made again; none where the server had another one.
+  std::optional<KeptState> before;
 
   std::uint64_t values_tick = 0;        ///< Of which tick the values are.
   std::vector<ReportedValue> values;    ///< The first is where to look; at most kReportedValuesMax.

@@ -108,7 +108,7 @@ void ReportSink::write(const Finding& finding, const std::string& name, const De
     return error == 0 ? "" : path + ": " + std::generic_category().message(error);
   };
   ReportFiles files{name + kJsonEnding, "", ""};
-  const protocol::Bytes log = cut_log(finding, files.log_reason);
+  const protocol::Bytes log = cut_log(finding, report.before, files.log_reason);
   if (!log.empty()) {
     files.log_reason = put(kLogEnding, log);
     if (files.log_reason.empty()) files.log = name + kLogEnding;

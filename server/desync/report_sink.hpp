@@ -54,6 +54,9 @@ class ReportSink {
 
 /// The match around a finding as a log of its own: from a state before the tick that differs, with
 /// the server's digests. Empty, with a reason in `error`, where it cannot be made.
-protocol::Bytes cut_log(const Finding& finding, std::string& error);
+/// @param before  A state on the way, from which one tick is made again: a client had this state
+///                from the server, and its build need not come to it by itself.
+protocol::Bytes cut_log(const Finding& finding, const std::optional<KeptState>& before,
+                        std::string& error);
 
 }  // namespace cycloid::server

@@ -131,7 +131,8 @@ TEST(WrongFrictionPlayer, IsReportedAndTheReportIsRepeatedWithTheServersBuildInT
   const Ran there =
       run_other(places::wrong_friction_program(), {"desync", "repeat", file, "--json"});
   EXPECT_EQ(there.exit, 1) << there.err;
-  EXPECT_NE(there.json()["agrees_with"], "server");
+  EXPECT_EQ(there.json()["agrees_with"], "client") << there.out;
+  EXPECT_EQ(there.json()["from_tick"].get<int>() + 1, there.json()["tick"].get<int>());
   const Ran text = run_program({"desync", "repeat", file});
   EXPECT_THAT(text.out, HasSubstr("this build agrees with the server\n"));
 

@@ -100,8 +100,21 @@ TEST_F(ReportSinkTest, WritesJsonTextAndALogThatBeginsAtAKeyframe) {
   EXPECT_EQ(log.header.branch_tick, 20u);
   EXPECT_EQ(log.header.room, "../a b");
   EXPECT_EQ(log.last_tick, 40u);
-  EXPECT_EQ(log.keyframes.size(), 1u);
+  ASSERT_EQ(log.keyframes.size(), 2u);
+  EXPECT_EQ(log.keyframes[0].tick, 20u);
+  EXPECT_EQ(log.keyframes[1].tick, 24u) << "the client's build goes from there, not from 20";
   EXPECT_EQ(log.ticks[4].digest, finding_.server_digest);
+}
+
+TEST_F(ReportSinkTest, TheLogHasNoStateThatTheServerDidNotHave) {
+  finding_.ticks[22 - 17].digest ^= 1;  // So that tick 22, made again, is not the server's.
+  ReportSink sink(options());
+  const auto written = sink.publish(finding_);
+  ASSERT_EQ(written.error, "");
+  const std::string bytes = text_of(fs::path(written.report).replace_extension(".cylog"));
+  const protocol::Log log = protocol::read_log(std::as_bytes(std::span(bytes)));
+  EXPECT_EQ(log.state, protocol::LogState::kComplete) << log.reason;
+  EXPECT_EQ(log.keyframes.size(), 1u);
 }
 
 TEST_F(ReportSinkTest, IsBoundedByTheHourAndByTheFolder) {
