@@ -137,10 +137,6 @@ Json to_json(const client::JoinReport& report) {
 
 /// The way to the room and back to it.
 void set_connection(const JoinCommand& command, client::JoinOptions& options) {
-  if (command.room.size() > protocol::kRoomNameBytesMax) {
-    throw Failure(kExitUsage, "--room: longer than " + std::to_string(protocol::kRoomNameBytesMax) +
-                                  " bytes: " + command.room);
-  }
   options.room = command.room;
   options.token = read_token(command.token);
   options.reconnect.on = command.reconnect_s != 0;
@@ -170,6 +166,8 @@ Exit join(const JoinCommand& command, bool json) {
   options.name = command.name;
   options.workers = command.workers;
   options.should_stop = stop_requested;
+  if (const std::string mistake = client::mistake_of(options); !mistake.empty())
+    throw Failure(kExitUsage, "--" + mistake);
   catch_stop_signals();
 
   const client::JoinReport report = client::join(options);

@@ -50,13 +50,17 @@ struct JoinOptions {
   std::function<void(const protocol::RoomNotice&)> on_notice;
 };
 
+/// What is wrong with the options, the first mistake alone: the option and why, or "" where they
+/// can be joined with. Asks neither the server nor the name service.
+std::string mistake_of(const JoinOptions& options);
+
 enum class End : std::uint8_t {
   kTicks,         ///< The wanted number of ticks was seen.
   kBye,           ///< The server closed the match.
   kStopped,       ///< By `should_stop`.
   kRefused,       ///< By the server; `refused` says why.
   kDisconnected,  ///< No connection, or it broke, or a deadline passed.
-  kFailed,        ///< The server broke the protocol, or the scene cannot run here.
+  kFailed,        ///< The server broke the protocol, or `mistake_of` the options is one.
 };
 
 const char* end_name(End end);

@@ -59,7 +59,11 @@ Visit::Visit(JoinOptions options)
       backoff_(options_.reconnect.first, options_.reconnect.longest, options_.reconnect.seed),
       resume_(options_.resume),
       room_(options_.room) {
-  begin(std::chrono::milliseconds(0));
+  std::string mistake = mistake_of(options_);
+  if (mistake.empty())
+    begin(std::chrono::milliseconds(0));
+  else
+    fail(std::move(mistake));
 }
 
 Visit::~Visit() {
@@ -74,17 +78,18 @@ void Visit::begin(std::chrono::milliseconds wait) {
   auto simulation = scenes::Simulation::create(options_.scene);
   solver::Error error = simulation.ok() ? solver::Error{} : simulation.error();
   if (error.ok()) error = simulation.value().set_workers_at_most(options_.workers, &steady_ns);
-  if (!error.ok()) {
-    report_.end = End::kFailed;
-    report_.reason = std::string("the scene cannot run: ") + error.field;
-    over_ = true;
-    return;
-  }
+  if (!error.ok()) return fail(std::string("the scene cannot run: ") + error.field);
   options_.resume = resume_;
   options_.room = room_;
   if (has_kept_) simulation.value().restore(kept_);
   attempt_ = std::make_unique<Attempt>(options_, std::move(simulation.value()), has_kept_, wait);
   if (report_.progress.begun()) attempt_->count_from(report_.progress.first_tick);
+}
+
+void Visit::fail(std::string reason) {
+  report_.end = End::kFailed;
+  report_.reason = std::move(reason);
+  over_ = true;
 }
 
 void Visit::poll(std::chrono::milliseconds wait) {

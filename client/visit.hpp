@@ -18,7 +18,7 @@ namespace cycloid::client {
 /// All callbacks of the options are called from inside of `poll`, on its thread.
 class Visit {
  public:
-  /// The first connection begins. Where the scene cannot run the visit is over at once.
+  /// The first connection begins. Where `mistake_of` the options is one the visit is over at once.
   explicit Visit(JoinOptions options);
   /// Says goodbye where it is connected: at most the farewell deadline of the connection, or as
   /// long as the system's name service takes where a name is being looked up.
@@ -36,7 +36,7 @@ class Visit {
   JoinReport report() const;
   /// What brings the seat back, once; empty where the server gave none.
   const std::vector<std::byte>& resume() const { return resume_; }
-  /// Of the connection there is now, or was last. Null where the scene cannot run.
+  /// Of the connection there is now, or was last. Null where the options have a mistake.
   Follower* follower();
   const Follower* follower() const;
 
@@ -45,6 +45,7 @@ class Visit {
   using Clock = std::chrono::steady_clock;
 
   void begin(std::chrono::milliseconds wait);
+  void fail(std::string reason);
   void attempt_ended();
   bool comes_back(const Attempt& ended);
   void count(const Attempt& ended);

@@ -59,21 +59,10 @@ std::string text_of(const char* text) {
   return text == nullptr ? "" : text;
 }
 
-/// What is wrong with the options, or "".
-std::string mistake_of(const cycloid_client_options& options) {
+/// What is wrong with what only the C interface has, or "": the rest is client::mistake_of.
+std::string mistake_in_c(const cycloid_client_options& options) {
   if (options.scene == nullptr) return "scene: null";
   if (options.host == nullptr) return "host: null";
-  if (options.mode < CYCLOID_MODE_LOCKSTEP || options.mode > CYCLOID_MODE_SNAPSHOT) return "mode";
-  if (options.profile < CYCLOID_PROFILE_EXACT || options.profile > CYCLOID_PROFILE_QUANTISED)
-    return "profile";
-  if (options.port == 0 || options.port > 65535) return "port: not 1 to 65535";
-  if (options.seat < CYCLOID_SPECTATOR) return "seat: not a seat, -1 or -2";
-  if (options.predict_ticks > client::Predictor::kWindowTicksMax) return "predict_ticks: over 64";
-  if (options.predict_ticks != 0 && options.mode == CYCLOID_MODE_SNAPSHOT)
-    return "predict_ticks: a snapshot client predicts nothing";
-  if (options.workers < 1 || options.workers > 64) return "workers: not 1 to 64";
-  if (text_of(options.name).size() > protocol::kNameBytesMax) return "name: over 64 bytes";
-  if (text_of(options.room).size() > protocol::kRoomNameBytesMax) return "room: over 64 bytes";
   if (options.token != nullptr && !client::token_from_text(options.token))
     return "token: no base64url of at most 512 bytes";
   if (options.resume != nullptr && options.resume_bytes != protocol::kResumeBytes)
@@ -81,11 +70,17 @@ std::string mistake_of(const cycloid_client_options& options) {
   return "";
 }
 
+/// 0 where it does not fit: that is a mistake of every option that is narrower here than in C.
+template <class Narrow>
+Narrow narrow(std::uint32_t wide) {
+  return std::in_range<Narrow>(wide) ? static_cast<Narrow>(wide) : Narrow{0};
+}
+
 client::JoinOptions to_join(const cycloid_client_options& options) {
   client::JoinOptions join;
-  join.mode = static_cast<protocol::Mode>(options.mode);
+  join.mode = protocol::Mode{narrow<std::uint8_t>(options.mode)};
   join.host = options.host;
-  join.port = static_cast<std::uint16_t>(options.port);
+  join.port = narrow<std::uint16_t>(options.port);
   join.name = text_of(options.name);
   join.room = text_of(options.room);
   if (options.token != nullptr) join.token = *client::token_from_text(options.token);
@@ -94,14 +89,14 @@ client::JoinOptions to_join(const cycloid_client_options& options) {
     join.resume.assign(bytes.begin(), bytes.end());
   }
   join.seat_wish = options.seat;
-  join.profile = static_cast<protocol::Profile>(options.profile);
+  join.profile = protocol::Profile{narrow<std::uint8_t>(options.profile)};
   join.predict_ticks = options.predict_ticks;
   join.reconnect.on = options.reconnect_deadline_ms != 0;
   join.reconnect.deadline = std::chrono::milliseconds(options.reconnect_deadline_ms);
   join.reconnect.seed =
       static_cast<std::uint64_t>(std::chrono::steady_clock::now().time_since_epoch().count());
   join.ticks = options.ticks;
-  join.workers = static_cast<int>(options.workers);
+  join.workers = narrow<int>(options.workers);
   return join;
 }
 
@@ -139,6 +134,8 @@ cycloid_status make_client(const cycloid_client_options& options, cycloid_client
   cycloid_client& client = *made;
   client.options = to_join(options);
   client.options.scene = std::move(*loaded.scene);
+  if (const std::string mistake = client::mistake_of(client.options); !mistake.empty())
+    return failed(CYCLOID_INVALID, mistake);
   if (options.scripted == 0) {
     client.options.input = [&client](int, std::uint64_t) { return client.input; };
   }
@@ -214,7 +211,7 @@ cycloid_status cycloid_client_create(const cycloid_client_options* options, cycl
   return guarded([&] {
     cycloid_client_options all = default_options();
     client::copy_known(*options, all);
-    if (const std::string mistake = mistake_of(all); !mistake.empty())
+    if (const std::string mistake = mistake_in_c(all); !mistake.empty())
       return failed(CYCLOID_INVALID, mistake);
     return make_client(all, *out);
   });

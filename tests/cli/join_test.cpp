@@ -31,6 +31,7 @@ TEST(JoinFlags, ThatAreWrongAreUsageAndNamed) {
       {"--predict: a snapshot client", {"--predict", "5", "--snapshot"}},
       {"--profile", {"--profile", "raw"}},
       {"--room: longer than 64 bytes", {"--room", std::string(65, 'a')}},
+      {"--name: longer than 64 bytes", {"--name", std::string(65, 'a')}},
       {"--token: ", {"--token", no_token}},
       {"--tls: fingerprint", {"--tls-fingerprint", "abc"}},
       {"no certificates in PEM", {"--tls-ca", folder.file("nowhere.pem")}},
