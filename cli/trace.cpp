@@ -96,9 +96,7 @@ void add_trace(CLI::App& app, Action& action) {
   command->add_option("--workers", options->setting.workers, "Threads; changes no bit")
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
-  command->add_option("--lanes", options->setting.lanes, "Contacts at a time; changes no bit")
-      ->capture_default_str()
-      ->check(CLI::IsMember({1, 4, 8, 16}));
+  add_lanes_option(command, options->setting.lanes);
   command->callback([options, tick, &action] {
     const bool one_tick = tick->count() > 0;
     action.run = [=, &action] {

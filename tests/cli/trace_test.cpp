@@ -66,6 +66,7 @@ TEST(TraceCommand, IsTheSameAtEveryLaneWidthAndWorkerCount) {
   EXPECT_THAT(expected, HasSubstr("contact 3: "));
   EXPECT_EQ(with("1", "1"), expected);
   EXPECT_EQ(with("16", "3"), expected);
+  EXPECT_EQ(with("0", "1"), expected) << "0 is what it takes by itself";
 }
 
 TEST(TraceCommand, RefusesWhatIsNotThere) {
