@@ -2,6 +2,7 @@
 
 #include <charconv>
 #include <iostream>
+#include <limits>
 #include <memory>
 #include <random>
 #include <stdexcept>
@@ -218,7 +219,8 @@ void add_join(CLI::App& app, Action& action) {
   command
       ->add_option("--reconnect", options->reconnect_s,
                    "Seconds to try to come back to the seat after a break; 0: not at all")
-      ->capture_default_str();
+      ->capture_default_str()
+      ->check(CLI::Range(std::uint32_t{0}, std::numeric_limits<std::uint32_t>::max()));
   command->add_flag("--tls", options->tls,
                     "Encrypt; the system's authorities vouch for the server");
   command->add_option("--tls-ca", options->trust.ca_file,

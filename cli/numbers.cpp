@@ -3,6 +3,7 @@
 #include <cerrno>
 #include <cmath>
 #include <cstdlib>
+#include <limits>
 #include <string>
 
 namespace cycloid::cli {
@@ -43,6 +44,10 @@ std::string number_mistake(const std::string& type, const std::string& word) {
                                                         : real_mistake(word);
   if (!mistake.empty()) return mistake;
   const double value = std::strtod(word.c_str(), nullptr);
+  // The parser itself would refuse such a number without a word of what there is.
+  const bool beyond_int = std::abs(value) > double{std::numeric_limits<int>::max()};
+  if (type.starts_with("INT:{") && beyond_int)
+    return "'" + word + "' not in " + type.substr(type.find('{'));
   if (type.ends_with(":POSITIVE") && !(value > 0.0)) return "'" + word + "' is not above 0";
   if (type.ends_with(":NONNEGATIVE") && value < 0.0) return "'" + word + "' is below 0";
   return "";

@@ -229,7 +229,9 @@ void add_serve(CLI::App& app, Action& action) {
                                          "A catalogue name or a scene file; or --config"));
   serving->add_option("--address", options.address, "The address to listen on")
       ->capture_default_str();
-  serving->add_option("--port", options.port, "The port; 0: any")->capture_default_str();
+  serving->add_option("--port", options.port, "The port; 0: any")
+      ->capture_default_str()
+      ->check(CLI::Range(0, 65535));
   serving->add_option("--ticks", options.ticks, "Close the match after so many; 0: never")
       ->capture_default_str();
   serving->add_option("--tick-rate", command->tick_rate, "Ticks per second; 0: the scene's")

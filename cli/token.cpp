@@ -186,7 +186,9 @@ void add_make(CLI::App& token, Action& action) {
   CLI::App* make = add_command(token, "make", "Sign a token that lets its bearer in once", action);
   make->add_option("--key", wish->key, "The signing key")->required();
   make->add_option("--room", wish->token.room, "The room, 1 to 64 bytes")->required();
-  make->add_option("--seat", wish->token.seat, "This seat only; -1: any")->capture_default_str();
+  make->add_option("--seat", wish->token.seat, "This seat only; -1: any")
+      ->capture_default_str()
+      ->check(CLI::Range(-1, 255));
   make->add_option("--role", wish->role, "player, spectator or admin")->capture_default_str();
   make->add_option("--identity", wish->token.identity, "Who it is, for logs; at most 64 bytes");
   make->add_option("--lifetime", wish->lifetime_s, "Seconds that it is good for")

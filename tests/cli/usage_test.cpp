@@ -49,6 +49,7 @@ TEST(Usage, NumbersThatAnOptionCannotHoldAreRefused) {
       {{"run", "half-pipe", "--digest-every", "-1"}, "--digest-every: '-1' is"},
       {{"run", "half-pipe", "--keyframe-every", " -1"}, "--keyframe-every: ' -1' is"},
       {{"run", "half-pipe", "--workers", "99"}, "--workers: Value 99 not in range 1 to 64"},
+      {{"run", "half-pipe", "--lanes", "99999999999"}, "'99999999999' not in {0,1,4,8,16}"},
       {{"diff", "half-pipe", "half-pipe", "--ticks", "-1"}, "--ticks: '-1' is"},
       {{"trace", "half-pipe", "--tick", "-1"}, "--tick: '-1' is"},
       {{"cut", "a.cylog", "-o", "b.cylog", "--from", "-1"}, "--from: '-1' is"},
@@ -57,6 +58,10 @@ TEST(Usage, NumbersThatAnOptionCannotHoldAreRefused) {
       {{"verify", "a.cylog", "--timeout", "-1"}, "--timeout: '-1' is not above 0"},
       {{"verify", "a.cylog", "--timeout", "inf"}, "--timeout: 'inf' is no number"},
 #ifdef CYCLOID_NETWORK
+      {{"serve", "half-pipe", "--port", "99999"}, "--port: Value 99999 not in range 0 to 65535"},
+      {{"join", "a:1", "half-pipe", "--reconnect", "4294967296"}, "not in range 0 to 4294967295"},
+      {{"token", "make", "--seat", "99999999999"},
+       "--seat: Value 99999999999 not in range -1 to 255"},
       {{"serve", "half-pipe", "--tick-rate", "nan"}, "--tick-rate: 'nan' is no number"},
       {{"serve", "half-pipe", "--drain", "nan"}, "--drain: 'nan' is no number"},
       {{"demo", "half-pipe", "--seconds", "nan"}, "--seconds: 'nan' is no number"},
