@@ -44,11 +44,13 @@ void parse_server(const std::string& text, client::JoinOptions& options) {
   const char* end = port.data() + port.size();
   const auto parsed = std::from_chars(port.data(), end, options.port);
   options.host = text.substr(0, colon);
-  if (options.host.size() > 2 && options.host.front() == '[' && options.host.back() == ']') {
+  bool good = parsed.ec == std::errc() && parsed.ptr == end && options.port != 0;
+  if (options.host.size() > 2 && options.host.front() == '[' && options.host.back() == ']')
     options.host = options.host.substr(1, options.host.size() - 2);
-  }
-  const bool good = parsed.ec == std::errc() && parsed.ptr == end && options.port != 0;
-  if (!good || options.host.empty()) throw Failure(kExitUsage, "HOST:PORT: not one: " + text);
+  else
+    good = good && options.host.find(':') == std::string::npos;
+  if (!good || options.host.empty())
+    throw Failure(kExitUsage, "HOST:PORT: not one, nor [IPV6]:PORT: " + text);
 }
 
 std::int32_t parse_seat(const std::string& text) {

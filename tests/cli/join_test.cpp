@@ -45,6 +45,17 @@ TEST(JoinFlags, ThatAreWrongAreUsageAndNamed) {
   }
 }
 
+TEST(JoinAddress, ThatIsNoneIsUsageAndIsNotLookedUp) {
+  for (const char* address : {"localhost", "localhost:", ":7000", "localhost:0", "localhost:65536",
+                              "localhost:7000:3", "localhost:7x", "::1:7000"}) {
+    const Ran ran = run_program({"join", address, "half-pipe"});
+    EXPECT_EQ(ran.exit, 2) << address;
+    EXPECT_THAT(ran.err, HasSubstr(std::string("HOST:PORT: not one, nor [IPV6]:PORT: ") + address));
+  }
+  const Ran nobody = run_program({"join", "[::1]:1", "half-pipe"});
+  EXPECT_EQ(nobody.exit, 5) << "nobody listens there";
+}
+
 TEST(JoinFlags, SayHowTheMatchIsPlayed) {
   Background server({"serve", "half-pipe", "--port", "0", "--digest-every", "5", "--json"});
   const std::string address = server.wait_for("listening on ");
