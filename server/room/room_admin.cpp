@@ -43,9 +43,9 @@ bool Room::reserve(std::size_t seat, const std::string& identity, std::uint64_t 
 void Room::pause(const std::string& reason) {
   if (state_ != RoomState::kRunning || pacer_.paused()) return;
   pacer_.pause(hooks_.now_ns());
-  notice(Notice::Kind::kAct, "the match stands still: " + protocol::printable(reason));
-  tell_all(protocol::NoticeKind::kSlowed, statistics_.slowed_ns / 1'000'000,
-           "the match stands still: " + reason);
+  const std::string text = "the match stands still" + (reason.empty() ? "" : ": " + reason);
+  notice(Notice::Kind::kAct, protocol::printable(text));
+  tell_all(protocol::NoticeKind::kSlowed, statistics_.slowed_ns / 1'000'000, text);
 }
 
 void Room::resume() {

@@ -187,6 +187,23 @@ TEST_F(RoomSeats, APausedMatchStandsStillAndGoesOnWithoutHurry) {
   EXPECT_EQ(room_->statistics().catch_up_ticks, 0u);
 }
 
+TEST_F(RoomSeats, APauseIsToldWithItsReasonWhereItHasOne) {
+  open();
+  const PeerId id = enter(0);
+  for (const std::string reason : {"", "dinner"}) {
+    const std::string text = "the match stands still" + (reason.empty() ? "" : ": " + reason);
+    notices_.clear();
+    room_->pause(reason);
+    ASSERT_EQ(notices_.size(), 1u);
+    EXPECT_EQ(notices_[0].text, text);
+    const auto told = only<protocol::RoomNotice>(hear(id));
+    ASSERT_EQ(told.size(), 1u);
+    EXPECT_EQ(told[0].text, text);
+    room_->resume();
+    (void)hear(id);
+  }
+}
+
 TEST_F(RoomSeats, InAPauseNobodyTimesOutAndRatesGoOn) {
   Limits limits;
   limits.messages_per_s = 5;
