@@ -108,6 +108,13 @@ Exit exit_of(const client::JoinReport& report) {
   return report.progress.mismatches == 0 ? kExitGood : kExitDiverged;
 }
 
+/// What went wrong, in a line. A room without a free seat may still have spectators.
+std::string failure_text(const client::JoinReport& report, bool wants_seat) {
+  const std::string text = std::string(client::end_name(report.end)) + ": " + report.reason;
+  const bool full = report.refused() && report.refused()->code == Refusal::kRoomFull;
+  return full && wants_seat ? text + "; to look on without a seat: --seat spectator" : text;
+}
+
 Json to_json(const client::JoinReport& report) {
   const client::Progress& progress = report.progress;
   Json object = {{"end", client::end_name(report.end)},
@@ -177,8 +184,9 @@ Exit join(const JoinCommand& command, bool json) {
   const Exit exit = exit_of(report);
   const Json object = to_json(report);
   if (exit != kExitGood && exit != kExitDiverged) {
-    std::cerr << "cycloid: " << command.server << ": " << client::end_name(report.end) << ": "
-              << visible(report.reason) << '\n';
+    const bool wants_seat = options.seat_wish != protocol::kSpectator;
+    std::cerr << "cycloid: " << command.server << ": " << visible(failure_text(report, wants_seat))
+              << '\n';
   }
   if (json) print_json(object, exit);
   if (json) return exit;

@@ -88,6 +88,21 @@ TEST(JoinFlags, SayHowTheMatchIsPlayed) {
   EXPECT_THAT(encrypted.err, HasSubstr("does the server speak TLS here?"));
 }
 
+TEST(JoinFlags, WhereAllSeatsAreTakenOneIsToldOfTheSpectators) {
+  Background server({"serve", "bouncing", "--port", "0", "--json"});
+  const std::string address = server.wait_for("listening on ");
+  ASSERT_NE(address, "");
+  const Background player({"join", address, "bouncing"});
+  ASSERT_NE(server.wait_for("joined at tick "), "");
+  const Ran second = run_program({"join", address, "bouncing", "--json"});
+  EXPECT_EQ(second.exit, 5);
+  EXPECT_EQ(second.json()["reason"], "1 seats taken, of 1");
+  EXPECT_THAT(second.err, HasSubstr("1 seats taken, of 1; to look on without a seat: "
+                                    "--seat spectator\n"));
+  EXPECT_EQ(run_program({"join", address, "bouncing", "--seat", "spectator", "--ticks", "5"}).exit,
+            0);
+}
+
 TEST(JoinFlags, ReconnectComesBackToAServerThatWasKilled) {
   auto server = std::make_unique<Background>(
       std::vector<std::string>{"serve", "half-pipe", "--port", "0", "--json"});
