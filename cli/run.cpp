@@ -122,8 +122,8 @@ void add_run(CLI::App& app, Action& action) {
       ->capture_default_str()
       ->check(CLI::Range(1, 64));
   add_lanes_option(command, options->lanes);
-  action.files.streams(
-      command->add_option("--log", options->log, "Write a log of the run to this file"));
+  action.files.streams(command->add_option(
+      "--log", options->log, "Write a log of the run to this file; one that is there is replaced"));
   command
       ->add_option("--keyframe-every", options->keyframe_every,
                    "Ticks between two exact states in the log; 0: none")

@@ -70,6 +70,14 @@ TEST(Run, LogReplaysAndVerifies) {
   EXPECT_EQ(whole.out, log + ": good, 60 ticks\n1 of 1 logs good, 60 ticks replayed\n");
 }
 
+TEST(Run, ReplacesALogThatIsThereAndSaysSoInItsHelp) {
+  const Folder folder;
+  write_text(folder.file("a.cylog"), std::string(100'000, 'x'));
+  ASSERT_EQ(run_program({"run", "beads", "--ticks", "9", "--log", folder.file("a.cylog")}).exit, 0);
+  EXPECT_EQ(run_program({"verify", folder.file("a.cylog")}).exit, 0);
+  EXPECT_THAT(run_program({"run", "--help"}).out, HasSubstr("one that is there is replaced"));
+}
+
 TEST(Run, WritesTheSameLogEveryTime) {
   const Folder folder;
   for (const char* name : {"a.cylog", "b.cylog"}) {
