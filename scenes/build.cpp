@@ -4,40 +4,13 @@
 
 #include "scenes/accuracy.hpp"
 #include "scenes/characters.hpp"
+#include "scenes/definitions.hpp"
 #include "scenes/reasons.hpp"
 #include "scenes/weave.hpp"
-#include "solver/trig.hpp"
 
 namespace cycloid::scenes {
 
 using solver::Error;
-
-template <int D>
-static solver::Vec<D> vec(const Triple& from) {
-  solver::Vec<D> to;
-  for (int i = 0; i < D; ++i) to[i] = from[static_cast<std::size_t>(i)];
-  return to;
-}
-
-static void set_rotation(const SceneBody& from, solver::BodyDef<2>& to) {
-  solver::sin_cos(from.angle, to.rotation[1], to.rotation[0]);
-  to.spin = {{from.spin[0]}};
-}
-static void set_rotation(const SceneBody& from, solver::BodyDef<3>& to) {
-  for (int i = 0; i < 4; ++i) to.rotation[i] = from.rotation[static_cast<std::size_t>(i)];
-  to.spin = vec<3>(from.spin);
-}
-
-static void set_solid(const SceneShape&, solver::ShapeDef<2>&) {}
-/// What only shapes of space have.
-static void set_solid(const SceneShape& from, solver::ShapeDef<3>& to) {
-  to.half = vec<3>(from.half);
-  for (int i = 0; i < 4; ++i) to.rotation[i] = from.rotation[static_cast<std::size_t>(i)];
-  to.triangles = from.triangles;
-  to.heights = from.heights;
-  to.columns = from.columns;
-  to.cell = from.cell;
-}
 
 static std::string at(const std::string& path, std::size_t i) {
   return path + "/" + std::to_string(i);
@@ -118,28 +91,10 @@ class Builder {
 
   /// False, with a mistake, where a shape names a material that is not there.
   bool make_body(const SceneBody& from, const std::string& path, Prefab<D>& to) {
-    to.body.kind = from.kind;
-    to.body.position = vec<D>(from.position);
-    set_rotation(from, to.body);
-    to.body.velocity = vec<D>(from.velocity);
-    to.body.mass = from.mass;
-    to.body.linear_damping = from.linear_damping;
-    to.body.angular_damping = from.angular_damping;
-    to.body.gravity_scale = from.gravity_scale;
-    to.body.fixed_rotation = from.fixed_rotation;
-    to.body.tag = from.tag;
+    to.body = body_def<D>(from);
     for (std::size_t i = 0; i < from.shapes.size(); ++i) {
       const SceneShape& shape = from.shapes[i];
-      solver::ShapeDef<D>& def = to.shapes.emplace_back();
-      def.kind = shape.kind;
-      for (const Triple& point : shape.points) def.points.push_back(vec<D>(point));
-      def.radius = shape.radius;
-      def.normal = vec<D>(shape.normal);
-      def.offset = shape.offset;
-      def.loop = shape.loop;
-      set_solid(shape, def);
-      def.density = shape.density;
-      def.filter = shape.filter;
+      solver::ShapeDef<D>& def = to.shapes.emplace_back(shape_def<D>(shape));
       def.material = material_index(shape.material);
       if (def.material != solver::kNone) continue;
       complain(at(path + "/shapes", i) + "/material",
@@ -179,46 +134,13 @@ class Builder {
     return found != bodies_.end();
   }
 
-  static void set_joint(const SceneJoint& from, solver::JointDef<D>& def) {
-    def.kind = from.kind;
-    def.anchor_a = vec<D>(from.anchor_a);
-    def.anchor_b = vec<D>(from.anchor_b);
-    def.axis = vec<D>(from.axis);
-    def.axle = vec<D>(from.axle);
-    def.steering = from.steering;
-    def.cone = from.cone;
-    def.length = from.length;
-    def.ratio = from.ratio;
-    def.hertz = from.hertz;
-    def.damping_ratio = from.damping_ratio;
-    def.angular_hertz = from.angular_hertz;
-    def.angular_damping_ratio = from.angular_damping_ratio;
-    def.limit_enabled = from.limit_enabled;
-    def.lower = from.lower;
-    def.upper = from.upper;
-    def.motor = from.motor;
-    def.motor_speed = from.motor_speed;
-    def.motor_max = from.motor_max;
-    def.target = from.target;
-    def.drive_amplitude = from.drive_amplitude;
-    def.drive_hertz = from.drive_hertz;
-    def.force_max = from.force_max;
-    def.torque_max = from.torque_max;
-    def.ground_a = vec<D>(from.ground_a);
-    def.ground_b = vec<D>(from.ground_b);
-    def.curve = from.curve;
-    def.size = from.size;
-    def.collide_connected = from.collide_connected;
-  }
-
   void add_joint(std::size_t i) {
     const SceneJoint& from = scene_.joints[i];
     const std::string path = at("/joints", i);
-    solver::JointDef<D> def;
+    solver::JointDef<D> def = joint_def<D>(from);
     const bool a = find_body(from.body_a, path + "/body_a", def.body_a);
     const bool b = find_body(from.body_b, path + "/body_b", def.body_b);
     if (!a || !b) return;
-    set_joint(from, def);
     const solver::Result<solver::JointId> id = built_->world.create_joint(def);
     if (!id.ok()) return complain(path + "/" + id.error().field, id.error());
     if (from.name.empty()) return;

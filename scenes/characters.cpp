@@ -3,19 +3,13 @@
 #include <algorithm>
 #include <bit>
 
+#include "scenes/definitions.hpp"
 #include "solver/validate.hpp"
 
 namespace cycloid::scenes {
 
 using solver::MoverState;
 using solver::Vec;
-
-template <int D>
-static Vec<D> vec(const Triple& from) {
-  Vec<D> to;
-  for (int i = 0; i < D; ++i) to[i] = from[static_cast<std::size_t>(i)];
-  return to;
-}
 
 /// Every range of a character's fields; `dimension` numbers of `up` have length 1.
 class CharacterCheck {
