@@ -1,10 +1,12 @@
 #include "scenes/build.hpp"
 
 #include <map>
+#include <optional>
 
 #include "scenes/accuracy.hpp"
 #include "scenes/characters.hpp"
 #include "scenes/definitions.hpp"
+#include "scenes/names.hpp"
 #include "scenes/reasons.hpp"
 #include "scenes/weave.hpp"
 
@@ -15,6 +17,11 @@ using solver::Error;
 static std::string at(const std::string& path, std::size_t i) {
   return path + "/" + std::to_string(i);
 }
+
+struct NamedJoint {
+  solver::JointId id;
+  std::size_t index = 0;  ///< In the scene.
+};
 
 template <int D>
 class Builder {
@@ -117,21 +124,21 @@ class Builder {
     const SceneBody& from = scene_.bodies[i];
     const std::string path = at("/bodies", i);
     Prefab<D> def;
-    if (!make_body(from, path, def)) return;
-    const solver::Result<solver::BodyId> id = built_->world.create_body(def.body, def.shapes);
-    if (!id.ok()) return complain(body_path(path, id.error()), reason_of(id.error(), from));
-    if (from.name.empty()) return;
-    if (!bodies_.emplace(from.name, id.value()).second)
-      complain(path + "/name", "is the name of an earlier body: '" + from.name + "'");
+    std::optional<solver::BodyId> made;
+    if (make_body(from, path, def)) {
+      const solver::Result<solver::BodyId> id = built_->world.create_body(def.body, def.shapes);
+      if (id.ok())
+        made = id.value();
+      else
+        complain(body_path(path, id.error()), reason_of(id.error(), from));
+    }
+    bodies_.add(from.name, path, made);
   }
 
   bool find_body(const std::string& name, const std::string& path, solver::BodyId& id) {
-    const auto found = bodies_.find(name);
-    if (found != bodies_.end())
-      id = found->second;
-    else
-      complain(path, "names no body: '" + name + "'");
-    return found != bodies_.end();
+    const solver::BodyId* found = bodies_.find(name, path);
+    if (found != nullptr) id = *found;
+    return found != nullptr;
   }
 
   void add_joint(std::size_t i) {
@@ -140,12 +147,15 @@ class Builder {
     solver::JointDef<D> def = joint_def<D>(from);
     const bool a = find_body(from.body_a, path + "/body_a", def.body_a);
     const bool b = find_body(from.body_b, path + "/body_b", def.body_b);
-    if (!a || !b) return;
-    const solver::Result<solver::JointId> id = built_->world.create_joint(def);
-    if (!id.ok()) return complain(path + "/" + id.error().field, id.error());
-    if (from.name.empty()) return;
-    if (!joints_.emplace(from.name, std::pair(id.value(), i)).second)
-      complain(path + "/name", "is the name of an earlier joint: '" + from.name + "'");
+    std::optional<NamedJoint> made;
+    if (a && b) {
+      const solver::Result<solver::JointId> id = built_->world.create_joint(def);
+      if (id.ok())
+        made = NamedJoint{id.value(), i};
+      else
+        complain(path + "/" + id.error().field, id.error());
+    }
+    joints_.add(from.name, path, made);
   }
 
   void add_cloth(std::size_t i) {
@@ -193,26 +203,30 @@ class Builder {
     const SceneBody& from = scene_.prefabs[i];
     const std::string path = at("/prefabs", i);
     Prefab<D> prefab;
-    if (!make_body(from, path, prefab)) return;
+    std::optional<std::size_t> made;
+    if (make_body(from, path, prefab) && is_possible(prefab, from, path)) {
+      made = built_->prefabs.size();
+      built_->prefabs.push_back(std::move(prefab));
+    }
+    if (from.name.empty()) complain(path + "/name", "has to be given: controls spawn by it");
+    prefabs_.add(from.name, path, made);
+  }
+
+  bool is_possible(const Prefab<D>& prefab, const SceneBody& from, const std::string& path) {
     solver::WorldDef<D> def = world_def();
     def.limits = {};
     solver::Result<solver::World<D>> world = solver::World<D>::create(def);
-    if (!world.ok()) return;  // Said already, of the scene's own world.
+    if (!world.ok()) return false;  // Said already, of the scene's own world.
     const solver::Result<solver::BodyId> id = world.value().create_body(prefab.body, prefab.shapes);
-    if (!id.ok()) return complain(body_path(path, id.error()), reason_of(id.error(), from));
-    if (from.name.empty()) return complain(path + "/name", "has to be given: controls spawn by it");
-    if (!prefabs_.emplace(from.name, built_->prefabs.size()).second)
-      return complain(path + "/name", "is the name of an earlier prefab: '" + from.name + "'");
-    built_->prefabs.push_back(std::move(prefab));
+    if (!id.ok()) complain(body_path(path, id.error()), reason_of(id.error(), from));
+    return id.ok();
   }
 
   void add_character(std::size_t i) {
     const SceneCharacter& from = scene_.characters[i];
     const std::string path = at("/characters", i);
     built_->characters.push_back(make_character<D>(from, path, mistakes_));
-    if (from.name.empty()) return;
-    if (!characters_.emplace(from.name, i).second)
-      complain(path + "/name", "is the name of an earlier character: '" + from.name + "'");
+    characters_.add(from.name, path, i);
   }
 
   /// Those of the seats are counted by now; the characters' come after them.
@@ -240,19 +254,16 @@ class Builder {
   }
 
   bool bind_joint(const Control& control, const std::string& path, BoundControl& bound) {
-    const auto found = joints_.find(control.target);
+    const NamedJoint* found = joints_.find(control.target, path + "/target");
+    if (found == nullptr) return false;
+    const SceneJoint& joint = scene_.joints[found->index];
+    bound.joint = found->id;
+    bound.motor_max = joint.motor_max;
+    const bool steers = joint.kind == solver::JointKind::kWheel && solver::Dim<D>::kSpin > 1;
     std::string reason;
-    if (found == joints_.end()) {
-      reason = "names no joint: '" + control.target + "'";
-    } else {
-      const SceneJoint& joint = scene_.joints[found->second.second];
-      bound.joint = found->second.first;
-      bound.motor_max = joint.motor_max;
-      const bool steers = joint.kind == solver::JointKind::kWheel && solver::Dim<D>::kSpin > 1;
-      if (control.effect == Effect::kMotorSpeed && joint.motor != solver::MotorKind::kSpeed)
-        reason = "names a joint without a motor of speed";
-      if (control.effect == Effect::kSteering && !steers) reason = "names no wheel in space";
-    }
+    if (control.effect == Effect::kMotorSpeed && joint.motor != solver::MotorKind::kSpeed)
+      reason = "names a joint without a motor of speed";
+    if (control.effect == Effect::kSteering && !steers) reason = "names no wheel in space";
     if (!reason.empty()) complain(path + "/target", reason);
     return reason.empty();
   }
@@ -271,20 +282,18 @@ class Builder {
         if (!bind_joint(control, path, bound)) return;
         break;
       case Effect::kSpawn: {
-        const auto found = prefabs_.find(control.target);
-        if (found == prefabs_.end())
-          return complain(path + "/target", "names no prefab: '" + control.target + "'");
-        bound.prefab = found->second;
+        const std::size_t* found = prefabs_.find(control.target, path + "/target");
+        if (found == nullptr) return;
+        bound.prefab = *found;
         bound.first_register = registers_;
         registers_ += 1 + 2 * control.limit;
         break;
       }
       case Effect::kWalk:
       case Effect::kJump: {
-        const auto found = characters_.find(control.target);
-        if (found == characters_.end())
-          return complain(path + "/target", "names no character: '" + control.target + "'");
-        bound.character = found->second;
+        const std::size_t* found = characters_.find(control.target, path + "/target");
+        if (found == nullptr) return;
+        bound.character = *found;
         break;
       }
       default:
@@ -297,11 +306,11 @@ class Builder {
   std::vector<Mistake>& mistakes_;
   std::unique_ptr<Built<D>> built_;
   std::map<std::string, std::uint32_t> materials_;
-  std::map<std::string, solver::BodyId> bodies_;
-  std::map<std::string, std::pair<solver::JointId, std::size_t>> joints_;
+  NameTable<solver::BodyId> bodies_{"body", mistakes_};
+  NameTable<NamedJoint> joints_{"joint", mistakes_};
   solver::BodyId anchor_body_;
-  std::map<std::string, std::size_t> prefabs_;
-  std::map<std::string, std::size_t> characters_;
+  NameTable<std::size_t> prefabs_{"prefab", mistakes_};
+  NameTable<std::size_t> characters_{"character", mistakes_};
   std::uint32_t registers_ = 0;
 };
 
