@@ -7,6 +7,7 @@
 #include "scenes/characters.hpp"
 #include "scenes/definitions.hpp"
 #include "scenes/names.hpp"
+#include "scenes/needs.hpp"
 #include "scenes/reasons.hpp"
 #include "scenes/weave.hpp"
 
@@ -31,6 +32,7 @@ class Builder {
 
   std::unique_ptr<Built<D>> build() {
     const std::size_t before = mistakes_.size();
+    limits_ = checked_limits(scene_, mistakes_);
     for (std::size_t i = 0; i < scene_.materials.size(); ++i) name_material(i);
     solver::Result<solver::World<D>> world = solver::World<D>::create(world_def());
     if (!world.ok()) {
@@ -64,7 +66,7 @@ class Builder {
     def.gravity = vec<D>(scene_.gravity);
     def.tick_s = 1.0f / scene_.tick_hz;
     def.tuning = tuning_of(scene_);
-    def.limits = scene_.limits;
+    def.limits = limits_;
     def.materials.clear();
     for (const SceneMaterial& material : scene_.materials)
       def.materials.push_back({material.friction, material.restitution, material.rolling_resistance,
@@ -158,6 +160,13 @@ class Builder {
     joints_.add(from.name, path, made);
   }
 
+  /// Limits are no reason: they have been raised to what the scene needs.
+  static std::string cloth_reason(const std::string& field) {
+    if (field != "columns" && field != "rows") return "is out of range";
+    return "has to be 1 or more, and all cloths have at most " +
+           std::to_string(kClothParticlesMax) + " particles together";
+  }
+
   void add_cloth(std::size_t i) {
     const Cloth& cloth = scene_.cloths[i];
     const std::string path = at("/cloths", i);
@@ -167,7 +176,7 @@ class Builder {
     Weave weave;
     if (const std::string field = weave_cloth(cloth, material, built_->world, weave);
         !field.empty())
-      return complain(path + "/" + field, "is out of range, or there is no room for it");
+      return complain(path + "/" + field, cloth_reason(field));
     for (std::size_t p = 0; p < cloth.pins.size(); ++p)
       add_cloth_pin(cloth, cloth.pins[p], at(path + "/pins", p), weave);
   }
@@ -240,8 +249,8 @@ class Builder {
     constexpr std::uint32_t kRegistersMax = 1u << 20;
     if (registers_ > kRegistersMax)
       return complain("/seats", "ask for more than 1048576 registers");
-    const Error error = built_->world.resize_registers(registers_);
-    if (!error.ok()) return complain("/limits/registers", error);
+    if (!built_->world.resize_registers(registers_).ok())
+      return complain("/limits/registers", too_small(limits_.registers, registers_));
     start_characters(*built_);
   }
 
@@ -305,6 +314,7 @@ class Builder {
   const Scene& scene_;
   std::vector<Mistake>& mistakes_;
   std::unique_ptr<Built<D>> built_;
+  solver::Limits limits_;
   std::map<std::string, std::uint32_t> materials_;
   NameTable<solver::BodyId> bodies_{"body", mistakes_};
   NameTable<NamedJoint> joints_{"joint", mistakes_};

@@ -5,13 +5,14 @@ namespace cycloid::scenes {
 std::string reason_of(const solver::Error& error) {
   switch (error.code) {
     case solver::Code::kCapacity:
-      return std::string("exceeds ") + error.field;
+      return "is too small for what the scene has";
     case solver::Code::kUnknownId:
       return "names no body";
     default:
       break;
   }
   const std::string_view field = error.field;
+  if (field.starts_with("limits.")) return "has to be at most 16777216";
   if (field == "floating_point_mode")
     return "is not IEEE: this thread rounds other than to nearest, or flushes subnormal numbers; a "
            "library that was linked with -ffast-math does that when it is loaded";

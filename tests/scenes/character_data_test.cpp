@@ -146,7 +146,7 @@ TEST(CharacterData, EachMistakeNamesItsField) {
                      "seats": [{"controls": [{"effect": "jump", "target": "x"}]}]})",
                  "/seats/0/controls/0/source", "has to be a button");
   expect_mistake(R"({"limits": {"registers": 8}, "characters": [{}]})", "/limits/registers",
-                 "exceeds");
+                 "is 8, and the scene needs 9 from the start");
   ASSERT_TRUE(from_json(R"({"limits": {"registers": 9}, "characters": [{}]})").scene);
 }
 

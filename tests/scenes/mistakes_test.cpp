@@ -3,7 +3,9 @@
 #include <string>
 #include <string_view>
 
+#include "scenes/build.hpp"
 #include "scenes/catalogue.hpp"
+#include "scenes/needs.hpp"
 
 namespace cycloid::scenes {
 
@@ -35,6 +37,67 @@ TEST(Mistakes, OfAPartIsNotSaidAgainOfAllThatNameIt) {
             "/bodies/0/mass: has to be positive, or the shapes have to give it\n"
             "/bodies/1/name: is the name of an earlier body: 'a'\n"
             "/joints/0/body_b: names no body: 'c'\n");
+}
+
+TEST(Mistakes, OfALimitAreSaidOnceWithBothNumbers) {
+  EXPECT_EQ(said(R"({"limits": {"bodies": 2}, "bodies": [
+      {"name": "a", "mass": 1}, {"name": "b", "mass": 1}, {"name": "c", "mass": 1},
+      {"name": "d", "mass": 1}, {"name": "e", "mass": 1}, {"name": "f", "mass": -1}],
+    "joints": [{"body_a": "a", "body_b": "e"}]})"),
+            "/limits/bodies: is 2, and the scene needs 6 from the start\n"
+            "/bodies/5/mass: has to be positive, or the shapes have to give it\n");
+}
+
+/// Uses every limit but those of contacts and registers; kinds with many shapes are among it.
+static Scene full_of_parts(std::uint32_t dimension) {
+  const bool plane = dimension == 2;
+  const std::string shapes =
+      plane ? R"({"kind": "chain", "points": [[0, 0], [-1, 0], [-2, 0], [-3, 1]]},
+                 {"kind": "chain", "loop": true, "points": [[0, 0], [1, 0], [0, 1]]},
+                 {"kind": "half_space", "normal": [0, 1]})"
+            : R"({"kind": "mesh", "points": [[0], [0, 0, 1], [1], [1, 0, 1]],
+                  "triangles": [[0, 1, 2], [2, 1, 3]]},
+                 {"kind": "height_field", "columns": 3, "heights": [0, 0, 0, 0, 1, 0, 0, 0, 0],
+                  "cell": [1, 1]}, {"kind": "box", "half": [1, 1, 1]})";
+  const Loaded loaded = from_json(R"({"dimension": )" + std::to_string(dimension) +
+                                  R"(, "bodies": [{"name": "a", "kind": "static", "shapes": [)" +
+                                  shapes + R"(]}, {"name": "b", "shapes": [{"radius": 1}]}],
+    "materials": [{"name": "m"}, {"name": "n"}], "joints": [{"body_a": "a", "body_b": "b"}],
+    "cloths": [{"across": [0.1], "down": [0, -0.1], "columns": 4, "rows": 3,
+                "pins": [{}, {"column": 3, "body": "b"}]},
+               {"across": [0.1], "columns": 5, "shear_compliance": -1}]})");
+  EXPECT_EQ(said(loaded.mistakes), "");
+  return loaded.scene.value_or(Scene{});
+}
+
+/// Goal: needs are counted as the solver takes them. Method: limits that are just enough are good,
+/// and each by itself is too small when it is one less.
+TEST(Limits, AreEnoughExactlyWhereTheSceneNeedsNoMore) {
+  for (const std::uint32_t dimension : {2u, 3u}) {
+    Scene scene = full_of_parts(dimension);
+    for (const Need& need : needs_of(scene))
+      scene.limits.*need.limit = static_cast<std::uint32_t>(need.count);
+    EXPECT_EQ(said(check(scene)), "") << dimension;
+    for (const Need& need : needs_of(scene)) {
+      ASSERT_GT(need.count, 0u) << need.name;
+      Scene small = scene;
+      --(small.limits.*need.limit);
+      EXPECT_EQ(said(check(small)), std::string("/limits/") + need.name + ": " +
+                                        too_small(small.limits.*need.limit, need.count) + "\n");
+    }
+    // Nothing takes less than is counted: the world is full.
+    std::vector<Mistake> mistakes;
+    const auto expect_full = [&](const auto& built) {
+      EXPECT_EQ(built->world.state().bodies.size(), scene.limits.bodies);
+      EXPECT_EQ(built->world.state().shapes.size(), scene.limits.shapes);
+      EXPECT_EQ(built->world.state().particles.size(), scene.limits.particles);
+      EXPECT_EQ(built->world.state().links.size(), scene.limits.links);
+    };
+    if (dimension == 2)
+      expect_full(build<2>(scene, mistakes));
+    else
+      expect_full(build<3>(scene, mistakes));
+  }
 }
 
 }  // namespace cycloid::scenes
