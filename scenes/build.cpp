@@ -132,7 +132,7 @@ class Builder {
       if (id.ok())
         made = id.value();
       else
-        complain(body_path(path, id.error()), reason_of(id.error(), from));
+        complain(body_path(path, id.error()), reason_of(id.error(), from, D));
     }
     bodies_.add(from.name, path, made);
   }
@@ -155,7 +155,7 @@ class Builder {
       if (id.ok())
         made = NamedJoint{id.value(), i};
       else
-        complain(path + "/" + id.error().field, id.error());
+        complain(path + "/" + id.error().field, reason_of(id.error(), from, D));
     }
     joints_.add(from.name, path, made);
   }
@@ -227,7 +227,7 @@ class Builder {
     solver::Result<solver::World<D>> world = solver::World<D>::create(def);
     if (!world.ok()) return false;  // Said already, of the scene's own world.
     const solver::Result<solver::BodyId> id = world.value().create_body(prefab.body, prefab.shapes);
-    if (!id.ok()) complain(body_path(path, id.error()), reason_of(id.error(), from));
+    if (!id.ok()) complain(body_path(path, id.error()), reason_of(id.error(), from, D));
     return id.ok();
   }
 

@@ -113,6 +113,14 @@ struct Names<Frame> {
                                                                 {"body", Frame::kBody}};
 };
 
+/// "" for an enumerator that no scene names.
+template <class Enum>
+std::string_view name_of(Enum value) {
+  for (const auto& [name, known] : Names<Enum>::kAll)
+    if (known == value) return name;
+  return "";
+}
+
 template <class F>
 void fields(SceneMaterial& m, F&& f) {
   f("name", m.name);

@@ -35,9 +35,8 @@ static Json json_of(Integer value) {
 template <class Enum>
 requires std::is_enum_v<Enum>
 static Json json_of(Enum value) {
-  for (const auto& [name, known] : Names<Enum>::kAll)
-    if (known == value) return std::string(name);
-  return "unknown";
+  const std::string_view name = name_of(value);
+  return name.empty() ? "unknown" : std::string(name);
 }
 
 /// Trailing zeros are left out, down to two numbers: a planar scene shows planar vectors.

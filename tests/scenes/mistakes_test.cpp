@@ -100,4 +100,61 @@ TEST(Limits, AreEnoughExactlyWhereTheSceneNeedsNoMore) {
   }
 }
 
+struct Sentence {
+  const char* json;
+  const char* said;
+};
+
+TEST(Mistakes, SayWhatToDoInstead) {
+  const Sentence sentences[] = {
+      {R"({"bodies": [{"shapes": [{"kind": "hull", "points": [[0]]}]}]})",
+       "/bodies/0/shapes/0/kind: hull is of dimension 3 only: in dimension 2 use polygon\n"},
+      {R"({"bodies": [{"kind": "static", "shapes": [{"kind": "mesh"}]}]})",
+       "/bodies/0/shapes/0/kind: mesh is of dimension 3 only: in dimension 2 use chain\n"},
+      {R"({"dimension": 3, "bodies": [{"kind": "static", "shapes": [{"kind": "chain"}]}]})",
+       "/bodies/0/shapes/0/kind: chain is of dimension 2 only: in dimension 3 use mesh or "
+       "height_field\n"},
+      {R"({"bodies": [{"shapes": [{"kind": "chain", "points": [[0], [1]]}]}]})",
+       "/bodies/0/shapes/0/kind: chain is of static bodies only: give the body the kind static\n"},
+      {R"({"bodies": [{"shapes": [{"points": [[0], [1]], "radius": 1}]}]})",
+       "/bodies/0/shapes/0/points: has to be one finite point, or none\n"},
+      {R"({"bodies": [{"shapes": [{"kind": "capsule", "points": [[1], [1]], "radius": 1}]}]})",
+       "/bodies/0/shapes/0/points: has to be two finite points, apart from each other\n"},
+      {R"({"bodies": [{"kind": "static", "velocity": [1]}]})",
+       "/bodies/0/velocity: has to be left out: a static body has none\n"},
+      {R"({"bodies": [{"kind": "static", "spin": [1]}]})",
+       "/bodies/0/spin: has to be left out: a static body has none\n"},
+      {R"({"limits": {"joints": 16777217}})", "/limits/joints: has to be at most 16777216\n"},
+      {R"({"cloths": [{"across": [0.1], "columns": 65537}]})",
+       "/cloths/0/columns: has to be 1 or more, and all cloths have at most 65536 particles "
+       "together\n"},
+  };
+  for (const Sentence& sentence : sentences)
+    EXPECT_EQ(said(sentence.json), sentence.said) << sentence.json;
+}
+
+TEST(Mistakes, OfAJointSayWhatToDoInstead) {
+  const auto said_of = [](int dimension, const std::string& joint) {
+    return said(R"({"dimension": )" + std::to_string(dimension) +
+                R"(, "bodies": [{"name": "a", "kind": "static"}, {"name": "b", "mass": 1},
+                                {"name": "c", "kind": "static"}],
+                     "joints": [{"body_a": "a", )" +
+                joint + "}]}");
+  };
+  EXPECT_EQ(said_of(2, R"("body_b": "a")"),
+            "/joints/0/body_b: has to be another body than body_a\n");
+  EXPECT_EQ(said_of(2, R"("body_b": "c")"),
+            "/joints/0/body_b: does not move, and body_a does not either: one of them has to\n");
+  EXPECT_EQ(said_of(2, R"("body_b": "b", "kind": "hinge", "axis": [1])"),
+            "/joints/0/kind: hinge is of dimension 3 only: in dimension 2 use revolute\n");
+  EXPECT_EQ(said_of(3, R"("body_b": "b", "kind": "gear")"),
+            "/joints/0/kind: gear is of dimension 2 only\n");
+  EXPECT_EQ(said_of(2, R"("body_b": "b", "kind": "wheel", "axis": [1], "axle": [0, 1])"),
+            "/joints/0/axle: has to be left out: dimension 2 has none\n");
+  EXPECT_EQ(said_of(2, R"("body_b": "b", "kind": "weld", "motor": "speed")"),
+            "/joints/0/motor: has to be left out: weld takes no such motor\n");
+  EXPECT_EQ(said_of(2, R"("body_b": "b", "kind": "curve", "curve": "polyline")"),
+            "/joints/0/curve: needs a chain or polygon on body_a\n");
+}
+
 }  // namespace cycloid::scenes

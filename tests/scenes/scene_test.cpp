@@ -134,7 +134,7 @@ TEST(Mistakes, EachIsNamedByPathAndReason) {
       {R"({"bodies": [{"shapes": [{"kind": "polygon", "points": [[0,0],[1,0],[2,0]]}]}]})",
        "/bodies/0/shapes/0/points", "convex"},
       {R"({"bodies": [{"shapes": [{"kind": "half_space", "normal": [0, 1]}]}]})",
-       "/bodies/0/shapes/0/kind", "not possible here"},
+       "/bodies/0/shapes/0/kind", "give the body the kind static"},
       {R"({"bodies": [{"name": "a", "kind": "static"}, {"name": "a", "kind": "static"}]})",
        "/bodies/1/name", "earlier body"},
       {R"({"joints": [{"body_a": "x", "body_b": "y"}]})", "/joints/0/body_a", "names no body"},

@@ -103,7 +103,7 @@ TEST(Solids, MistakesNameTheFieldAndWhatItHasToBe) {
        "span a volume"},
       {R"({"kind": "hull", "points": [[0,0,0],[1,0,0],[0,1,0]]})", "points", "4 to 256 points"},
       {R"({"kind": "hull", "radius": 0.1, "points": [[0,0,0],[1,0,0],[0,1,0],[0,0,1]]})", "radius",
-       "has to be"},
+       "hull has none"},
       {R"({"kind": "box", "half": [1, 0, 1]})", "half", "positive"},
       {R"({"kind": "box", "half": [1, 1, 1], "rotation": [0, 0, 0, 2]})", "rotation", "length 1"},
       {R"({"kind": "box", "half": [1, 1, 1], "points": [[0], [1]]})", "points", "one finite point"},
@@ -122,7 +122,7 @@ TEST(Solids, MistakesNameTheFieldAndWhatItHasToBe) {
       {R"({"kind": "height_field", "columns": 2, "heights": [0, 0, 0], "cell": [1, 1]})", "heights",
        "whole rows"},
       {R"({"kind": "height_field", "columns": 2, "heights": [0, 0, 0, 0]})", "cell", "positive"},
-      {R"({"kind": "polygon", "points": [[0],[1],[0,1]]})", "kind", "not possible here"},
+      {R"({"kind": "polygon", "points": [[0],[1],[0,1]]})", "kind", "use box or hull"},
   };
   for (const WrongShape& wrong : wrongs) {
     const Loaded loaded =
@@ -143,6 +143,7 @@ TEST(Solids, MistakesNameTheFieldAndWhatItHasToBe) {
       from_json(R"({"bodies": [{"shapes": [{"kind": "box", "half": [1, 1, 1]}]}]})");
   ASSERT_EQ(plane.mistakes.size(), 1u);
   EXPECT_EQ(plane.mistakes[0].path, "/bodies/0/shapes/0/kind");
+  EXPECT_EQ(plane.mistakes[0].reason, "box is of dimension 3 only: in dimension 2 use polygon");
 }
 
 TEST(Solids, EveryBitFlipOfABinaryFileIsRefusedOrAScene) {
