@@ -278,8 +278,9 @@ Loaded from_binary(std::span<const std::byte> bytes, Untuned untuned) {
     return loaded;
   };
   // The library compares the identifier without looking at the size, and asserts on the largest.
-  if (bytes.size() < 8 || bytes.size() > kBinaryBytesMax)
-    return refuse("is not a binary scene: its size is out of range");
+  if (bytes.empty()) return refuse("is empty");
+  if (bytes.size() < 8) return refuse("is neither JSON nor a binary scene");
+  if (bytes.size() > kBinaryBytesMax) return refuse("is larger than 64 MiB");
   const auto* data = reinterpret_cast<const std::uint8_t*>(bytes.data());
   if (!fb::SceneBufferHasIdentifier(data)) return refuse("is neither JSON nor a binary scene");
   flatbuffers::Verifier verifier(data, bytes.size(), /*max_depth=*/8, /*max_tables=*/1u << 20);

@@ -122,7 +122,8 @@ Loaded load_file(const std::string& file, Untuned untuned) {
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
     return mistake("cannot be read");
   const std::size_t first = bytes.find_first_not_of(" \t\r\n");
-  if (first != std::string::npos && bytes[first] == '{') return from_json(bytes, untuned);
+  if (first == std::string::npos) return mistake("is empty");
+  if (bytes[first] == '{') return from_json(bytes, untuned);
   return from_binary(std::as_bytes(std::span(bytes)), untuned);
 }
 

@@ -1,5 +1,8 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
 
+#include <filesystem>
+#include <fstream>
 #include <string>
 #include <string_view>
 
@@ -155,6 +158,21 @@ TEST(Mistakes, OfAJointSayWhatToDoInstead) {
             "/joints/0/motor: has to be left out: weld takes no such motor\n");
   EXPECT_EQ(said_of(2, R"("body_b": "b", "kind": "curve", "curve": "polyline")"),
             "/joints/0/curve: needs a chain or polygon on body_a\n");
+}
+
+TEST(Mistakes, OfAFileSayWhatItIs) {
+  const auto said_of_file = [](std::string_view text) {
+    const std::string file = testing::TempDir() + "cycloid-" + std::to_string(::getpid()) + ".json";
+    std::ofstream(file) << text;
+    const std::string all = said(load_file(file).mistakes);
+    std::filesystem::remove(file);
+    return all;
+  };
+  EXPECT_EQ(said_of_file(""), ": is empty\n");
+  EXPECT_EQ(said_of_file(" \n\n"), ": is empty\n");
+  EXPECT_EQ(said_of_file("name"), ": is neither JSON nor a binary scene\n");
+  EXPECT_EQ(said_of_file("dimension: 2"), ": is neither JSON nor a binary scene\n");
+  EXPECT_EQ(said(from_binary({}).mistakes), ": is empty\n");
 }
 
 }  // namespace cycloid::scenes
