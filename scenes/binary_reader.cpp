@@ -57,7 +57,7 @@ class BinaryReader {
     to.offset = from.offset();
     to.loop = from.loop();
     to.half = triple(from.half());
-    // A file from before boxes has none: not turned, as in scene.hpp.
+    // A file from before boxes has none: not turned, as in scene.hpp. Nor has a body to have one.
     if (from.rotation() != nullptr) to.rotation = quadruple(from.rotation());
     if (from.triangles() != nullptr && spend(from.triangles()->size() * sizeof(fb::Corners))) {
       to.triangles.reserve(from.triangles()->size());
@@ -79,7 +79,7 @@ class BinaryReader {
     to.kind = static_cast<solver::BodyKind>(from.kind());
     to.position = triple(from.position());
     to.angle = from.angle();
-    to.rotation = quadruple(from.rotation());
+    if (from.rotation() != nullptr) to.rotation = quadruple(from.rotation());
     to.velocity = triple(from.velocity());
     to.spin = triple(from.spin());
     to.mass = from.mass();

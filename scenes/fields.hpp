@@ -113,6 +113,11 @@ struct Names<Frame> {
                                                                 {"body", Frame::kBody}};
 };
 
+/// Whether a field of four numbers is a quaternion: those are written and read in full.
+inline bool is_quaternion(std::string_view field) {
+  return field == "rotation";
+}
+
 /// "" for an enumerator that no scene names.
 template <class Enum>
 std::string_view name_of(Enum value) {

@@ -51,7 +51,12 @@ class JsonReader {
   void operator()(const char* name, T& field) {
     known_.emplace_back(name);
     const auto found = object_.find(name);
-    if (found != object_.end()) read(*found, path_ + "/" + name, field);
+    if (found == object_.end()) return;
+    if constexpr (std::is_same_v<T, std::array<float, 4>>) {
+      if (is_quaternion(name) && found->is_array() && found->size() != 4)
+        return complain(path_ + "/" + name, "has to be 4 numbers: the quaternion x, y, z, w");
+    }
+    read(*found, path_ + "/" + name, field);
   }
 
  private:
@@ -120,7 +125,8 @@ class JsonReader {
     complain(path, "has to be one of " + allowed);
   }
 
-  /// Vectors may leave out trailing zeros: two numbers do in the plane.
+  /// Vectors may leave out trailing zeros: two numbers do in the plane. Not quaternions, of which
+  /// the last number is hardly ever 0.
   template <std::size_t N>
   void read(const Json& json, const std::string& path, std::array<float, N>& field) {
     if (!json.is_array() || json.empty() || json.size() > N)

@@ -39,7 +39,8 @@ static Json json_of(Enum value) {
   return name.empty() ? "unknown" : std::string(name);
 }
 
-/// Trailing zeros are left out, down to two numbers: a planar scene shows planar vectors.
+/// Trailing zeros are left out, down to two numbers: a planar scene shows planar vectors. Those of
+/// a quaternion are put back.
 template <std::size_t N>
 static Json json_of(const std::array<float, N>& values) {
   std::size_t count = N;
@@ -75,6 +76,8 @@ static Json json_of(const Part& part) {
   std::size_t i = 0;
   fields(copy, [&](const char* name, auto& field) {
     Json value = json_of(field);
+    if (is_quaternion(name) && value != default_values[i])
+      while (value.size() < 4) value.push_back(0.0);
     if (value != default_values[i++]) object[name] = std::move(value);
   });
   return object;

@@ -9,18 +9,9 @@
 #include "scenes/build.hpp"
 #include "scenes/catalogue.hpp"
 #include "scenes/needs.hpp"
+#include "tests/scenes/said.hpp"
 
 namespace cycloid::scenes {
-
-/// All that is said of a scene, a line each.
-static std::string said(const std::vector<Mistake>& mistakes) {
-  std::string text;
-  for (const Mistake& mistake : mistakes) text += mistake.path + ": " + mistake.reason + "\n";
-  return text;
-}
-static std::string said(std::string_view json) {
-  return said(from_json(json).mistakes);
-}
 
 TEST(Mistakes, OfAPartIsNotSaidAgainOfAllThatNameIt) {
   EXPECT_EQ(said(R"({"bodies": [
