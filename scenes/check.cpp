@@ -3,6 +3,7 @@
 #include "scenes/accuracy.hpp"
 #include "scenes/build.hpp"
 #include "scenes/catalogue.hpp"
+#include "scenes/unused.hpp"
 
 namespace cycloid::scenes {
 
@@ -59,6 +60,7 @@ std::vector<Mistake> check(const Scene& scene, Untuned untuned) {
     return mistakes;
   }
   check_accuracy(scene, untuned, mistakes);
+  check_unused(scene, mistakes);
   if (scene.seats.size() > kSeatsMax) mistakes.push_back({"/seats", "are 256 at most"});
   for (std::size_t s = 0; s < scene.seats.size(); ++s) {
     const std::string path = "/seats/" + std::to_string(s);

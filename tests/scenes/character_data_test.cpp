@@ -13,6 +13,7 @@ namespace cycloid::scenes {
 /// No field of the character has its default.
 static Scene full_scene() {
   Scene scene = planar_scene("full", "");
+  scene.dimension = 3;  // The plane has no third numbers.
   scene.bodies = {ground()};
   SceneCharacter c;
   c.name = "walker";
@@ -40,6 +41,7 @@ static Scene full_scene() {
   Control jump = walk;
   jump.source = Source::kButton;
   jump.effect = Effect::kJump;
+  jump.value = {};
   Seat seat;
   seat.controls = {walk, jump};
   scene.seats = {seat};
