@@ -47,6 +47,11 @@ static void check_script(const ScriptEntry& entry, const std::string& path,
   if (!are_within(entry.axes, 1.0f)) mistakes.push_back({path + "/axes", "has to lie within 1"});
   if (entry.buttons > 0xffffu) mistakes.push_back({path + "/buttons", "has 16 bits at most"});
   if (entry.from < 1) mistakes.push_back({path + "/from", "has to be 1 or later"});
+  if (entry.until != 0 && entry.until <= entry.from)
+    mistakes.push_back({path + "/until", "has to be later than from, or 0: for ever"});
+  if (entry.every != 0 && entry.hold < 1)
+    mistakes.push_back(
+        {path + "/hold", "has to be 1 or more: the ticks of every that it speaks in"});
 }
 
 std::vector<Mistake> check(const Scene& scene, Untuned untuned) {

@@ -142,4 +142,17 @@ TEST(Unused, IsRefusedInBinaryToo) {
             "/bodies/0/position: has to be two numbers in dimension 2\n");
 }
 
+TEST(Script, ThatNeverSpeaksIsRefused) {
+  const auto entry = [](const std::string& text) {
+    return said(R"({"seats": [{"script": [{)" + text + "}]}]}");
+  };
+  EXPECT_EQ(entry(R"("from": 5, "until": 6)"), "");
+  EXPECT_EQ(entry(R"("from": 5, "until": 0)"), "");
+  const std::string until = "/seats/0/script/0/until: has to be later than from, or 0: for ever\n";
+  EXPECT_EQ(entry(R"("from": 5, "until": 5)"), until);
+  EXPECT_EQ(entry(R"("from": 5, "until": 2)"), until);
+  EXPECT_EQ(entry(R"("every": 5, "hold": 0)"),
+            "/seats/0/script/0/hold: has to be 1 or more: the ticks of every that it speaks in\n");
+}
+
 }  // namespace cycloid::scenes
