@@ -262,6 +262,14 @@ class Builder {
       add_control(scene_.seats[i].controls[c], at(path + "/controls", c), seat);
   }
 
+  /// The world passes over what acts on a body without an inverse mass.
+  bool bind_body(const Control& control, const std::string& path, BoundControl& bound) {
+    if (!find_body(control.target, path + "/target", bound.body)) return false;
+    if (built_->world.state().bodies[bound.body.index].inverse_mass != 0.0f) return true;
+    complain(path + "/target", "names a body that nothing moves: it has to be dynamic");
+    return false;
+  }
+
   bool bind_joint(const Control& control, const std::string& path, BoundControl& bound) {
     const NamedJoint* found = joints_.find(control.target, path + "/target");
     if (found == nullptr) return false;
@@ -284,7 +292,7 @@ class Builder {
       case Effect::kForce:
       case Effect::kTorque:
       case Effect::kImpulse:
-        if (!find_body(control.target, path + "/target", bound.body)) return;
+        if (!bind_body(control, path, bound)) return;
         break;
       case Effect::kMotorSpeed:
       case Effect::kSteering:

@@ -124,8 +124,8 @@ TEST(Unused, FieldsOfOtherEffectsAreRefused) {
       {2, control(button + R"("effect": "jump", "target": "c", "value": [1])"), path + "value",
        "has to be left out of spawn and jump"},
       {2, control(R"("target": "b")"), path + "value", nothing},
-      {3, control(R"("effect": "torque", "target": "b")"), path + "value", nothing},
-      {3, control(R"("effect": "walk", "target": "c")"), path + "value", nothing},
+      {2, control(R"("effect": "torque", "target": "b")"), path + "value", nothing},
+      {2, control(R"("effect": "walk", "target": "c")"), path + "value", nothing},
       {2, control(button + R"("effect": "impulse", "target": "b")"), path + "value", nothing},
       {2, R"("prefabs": [{"name": "p", "mass": 1, "position": [1]}]})", "/prefabs/0/position",
        "has to be left out: the control that spawns a prefab states it"},
@@ -153,6 +153,22 @@ TEST(Script, ThatNeverSpeaksIsRefused) {
   EXPECT_EQ(entry(R"("from": 5, "until": 2)"), until);
   EXPECT_EQ(entry(R"("every": 5, "hold": 0)"),
             "/seats/0/script/0/hold: has to be 1 or more: the ticks of every that it speaks in\n");
+}
+
+TEST(Controls, OfBodiesThatNothingMovesAreRefused) {
+  const auto control = [](const std::string& body, const std::string& effect) {
+    return said(R"({"bodies": [{"name": "b", )" + body + R"(}], "seats": [{"controls": [
+        {"source": "button", "target": "b", "value": [1], "effect": ")" +
+                effect + R"("}]}]})");
+  };
+  const std::string refused =
+      "/seats/0/controls/0/target: names a body that nothing moves: it has to be dynamic\n";
+  for (const char* effect : {"force", "torque", "impulse"}) {
+    EXPECT_EQ(control(R"("kind": "static")", effect), refused);
+    EXPECT_EQ(control(R"("kind": "kinematic")", effect), refused);
+    EXPECT_EQ(control(R"("kind": "particle", "mass": 1)", effect), "");
+    EXPECT_EQ(control(R"("shapes": [{"radius": 1}])", effect), "");
+  }
 }
 
 }  // namespace cycloid::scenes
