@@ -183,7 +183,10 @@ void Host::drain(const std::string& reason, std::chrono::milliseconds deadline) 
     if (draining_.exchange(true)) return;
     options_.logger->info("draining: {}; rooms end within {} ms", reason, deadline.count());
     gatehouse_->drain("the server goes away: " + reason);
-    for (const auto& room : rooms()) room->act(LifeAct::kDrain, reason, deadline, {});
+    for (const auto& room : rooms()) {
+      room->act(LifeAct::kDrain, reason, deadline, {});
+      room->hasten_drain(reason, deadline);  // One that drains already refuses the act.
+    }
     finish_if_over();
   });
 }

@@ -69,6 +69,8 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   using Done = std::function<void(ActResult)>;
   /// `done` is called on some thread; it may be empty. kDrain and kEnd tell the clients `reason`.
   void act(LifeAct act, std::string reason, std::chrono::milliseconds deadline, Done done);
+  /// One that drains ends within this time, if that is sooner; of another nothing changes.
+  void hasten_drain(std::string reason, std::chrono::milliseconds deadline);
   /// Takes the seat from whoever holds it.
   void kick(std::uint16_t seat, std::string reason, Done done);
   /// Keeps the seat for an identity, or, where that is "", for a token bound to the seat, until so
@@ -102,6 +104,7 @@ class HostedRoom : public std::enable_shared_from_this<HostedRoom> {
   void arm();
   void arm_at(std::int64_t process_ns);
   void settle(std::int64_t now_ns);
+  void drain_within(std::chrono::milliseconds deadline, const std::string& reason);
   void end(const std::string& reason);
   void wait_for_last();
   void wake_sessions();

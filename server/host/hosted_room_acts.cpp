@@ -29,7 +29,6 @@ void HostedRoom::act(LifeAct act, std::string reason, std::chrono::milliseconds 
                done = std::move(done)] {
     HostedRoom& room = *self;
     if (!room.room_) return answer(done, {kConflict, "the room has ended"});
-    const std::int64_t now_ns = process_now_ns();
     const bool was_paused = room.life_.stage() == LifeStage::kPaused;
     if (std::string why = room.life_.apply(act); !why.empty()) {
       return answer(done, {kConflict, std::move(why)});
@@ -40,18 +39,32 @@ void HostedRoom::act(LifeAct act, std::string reason, std::chrono::milliseconds 
     if (was_paused && room.life_.stage() != LifeStage::kPaused) room.room_->resume();
     room.site_.logger->info("room {}: {}{}{}", room.name_, life_act_name(act),
                             reason.empty() ? "" : ": ", reason);
-    if (act == LifeAct::kDrain) {
-      room.drain_at_ns_ = now_ns + std::chrono::nanoseconds(deadline).count();
-      room.drain_reason_ = reason;
-      room.room_->announce_drain(deadline, reason);
-      room.wake_sessions();
-    }
+    if (act == LifeAct::kDrain) room.drain_within(deadline, reason);
     if (act == LifeAct::kEnd) room.end(reason);
     answer(done, {});
     room.timer_.cancel();  // Goes on at once in its new stage.
     if (act == LifeAct::kEnd) room.wait_for_last();
   };
   asio::post(strand_, std::move(work));
+}
+
+void HostedRoom::drain_within(std::chrono::milliseconds deadline, const std::string& reason) {
+  drain_at_ns_ = process_now_ns() + std::chrono::nanoseconds(deadline).count();
+  drain_reason_ = reason;
+  room_->announce_drain(deadline, reason);
+  wake_sessions();
+}
+
+void HostedRoom::hasten_drain(std::string reason, std::chrono::milliseconds deadline) {
+  asio::post(strand_, [self = shared_from_this(), reason = std::move(reason), deadline] {
+    HostedRoom& room = *self;
+    if (!room.room_ || room.life_.stage() != LifeStage::kDraining) return;
+    const std::int64_t at_ns = process_now_ns() + std::chrono::nanoseconds(deadline).count();
+    if (at_ns >= room.drain_at_ns_) return;
+    room.site_.logger->info("room {}: ends within {} ms: {}", room.name_, deadline.count(), reason);
+    room.drain_within(deadline, reason);
+    room.timer_.cancel();  // The end may be now.
+  });
 }
 
 void HostedRoom::ask(Done done, std::function<ActResult(Room&)> question) {

@@ -1,0 +1,60 @@
+#include <gtest/gtest.h>
+
+#include "tests/server/host_fixture.hpp"
+
+namespace cycloid::server {
+namespace {
+
+using namespace std::chrono_literals;
+
+constexpr std::uint64_t kHourMs = 3'600'000;
+
+/// A host with a room and somebody in it.
+class HostDrain : public testing::Test {
+ protected:
+  void open() {
+    HostOptions options = quiet_host(lines_);
+    options.rooms.push_back({"arena", two_seat_settings()});
+    server_.emplace(std::move(options));
+    peer_.emplace(server_->port());
+    peer_->greet("arena");
+    ASSERT_TRUE(peer_->wait_for<protocol::Welcome>());
+  }
+  Host& host() { return server_->host(); }
+  /// How long the match still lasts, as its client is told next; 0: it is not told.
+  std::uint64_t told_ms() {
+    const auto notice = peer_->wait_for<protocol::RoomNotice>();
+    return notice && notice->kind == protocol::NoticeKind::kDraining ? notice->value : 0;
+  }
+  std::string farewell() {
+    const auto bye = peer_->wait_for<protocol::Bye>();
+    peer_->hang_up();
+    return bye ? bye->reason : "none";
+  }
+
+  HostLines lines_;
+  std::optional<RunningHost> server_;
+  std::optional<HostPeer> peer_;
+};
+
+TEST_F(HostDrain, OfTheProcessEndsARoomSoonerThatDrainsAlready) {
+  open();
+  ASSERT_TRUE(server_->act("arena", LifeAct::kDrain, 1h).ok());
+  EXPECT_EQ(told_ms(), kHourMs);
+  host().drain("maintenance", 200ms);
+  EXPECT_EQ(told_ms(), 200u);
+  EXPECT_EQ(farewell(), "maintenance");
+  EXPECT_TRUE(server_->report().good);
+}
+
+TEST_F(HostDrain, OfTheProcessLeavesARoomThatEndsSoonerAsItIs) {
+  open();
+  ASSERT_TRUE(server_->act("arena", LifeAct::kDrain, 200ms).ok());
+  EXPECT_EQ(told_ms(), 200u);
+  host().drain("maintenance", 1h);
+  EXPECT_EQ(farewell(), "by the test");
+  EXPECT_TRUE(server_->report().good);
+}
+
+}  // namespace
+}  // namespace cycloid::server
