@@ -186,6 +186,9 @@ void HostedRoom::show_places() {
 }
 
 void HostedRoom::arm() {
+  if (life_.stage() == LifeStage::kDraining) {  // Which may end long before a rare tick.
+    return arm_at(std::min(room_->next_deadline_ns(), drain_at_ns_));
+  }
   if (life_.ticking()) return arm_at(room_->next_deadline_ns());
   meters_.armed_ns = 0;
   timer_.expires_after(std::chrono::nanoseconds(kIdleLookNs));

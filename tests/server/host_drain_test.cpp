@@ -12,9 +12,11 @@ constexpr std::uint64_t kHourMs = 3'600'000;
 /// A host with a room and somebody in it.
 class HostDrain : public testing::Test {
  protected:
-  void open() {
+  /// @param rate_millihertz  Of its ticks; 0: the scene's.
+  void open(std::uint32_t rate_millihertz = 0) {
     HostOptions options = quiet_host(lines_);
     options.rooms.push_back({"arena", two_seat_settings()});
+    options.rooms[0].settings.tick_rate_millihertz = rate_millihertz;
     server_.emplace(std::move(options));
     peer_.emplace(server_->port());
     peer_->greet("arena");
@@ -53,6 +55,15 @@ TEST_F(HostDrain, OfTheProcessLeavesARoomThatEndsSoonerAsItIs) {
   EXPECT_EQ(told_ms(), 200u);
   host().drain("maintenance", 1h);
   EXPECT_EQ(farewell(), "by the test");
+  EXPECT_TRUE(server_->report().good);
+}
+
+TEST_F(HostDrain, KeepsItsDeadlineWhereTicksAreRare) {
+  open(50);  // One in 20 s.
+  const auto begin = std::chrono::steady_clock::now();
+  host().drain("maintenance", 200ms);
+  EXPECT_EQ(farewell(), "maintenance");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
   EXPECT_TRUE(server_->report().good);
 }
 
