@@ -155,8 +155,8 @@ void Host::wait_for_signal() {
     // It reads files, for which no room waits.
     if (signal == SIGHUP) return asio::post(slow_, options_.on_reload);
     const std::string name = signal == SIGINT ? "SIGINT" : "SIGTERM";
-    if (!draining_ && drain_time().count() > 0) return drain(name, drain_time());
-    if (!draining_) return end(name);
+    if (++signals_heard_ == 1)
+      return drain_time().count() > 0 ? drain(name, drain_time()) : end(name);
     for (const auto& room : rooms()) room->hurry(name);  // Asked twice: at once.
     asio::error_code ignored;
     signals_.clear(ignored);  // Asked thrice, such as while a disk hangs: as the system does it.
@@ -180,7 +180,9 @@ std::vector<std::shared_ptr<HostedRoom>> Host::rooms() const {
 
 void Host::drain(const std::string& reason, std::chrono::milliseconds deadline) {
   asio::post(accept_strand_, [this, reason, deadline] {
-    if (draining_.exchange(true)) return;
+    const std::int64_t at_ns = process_now_ns() + std::chrono::nanoseconds(deadline).count();
+    if (draining_.exchange(true) && at_ns >= drain_at_ns_) return;
+    drain_at_ns_ = at_ns;
     options_.logger->info("draining: {}; rooms end within {} ms", reason, deadline.count());
     gatehouse_->drain("the server goes away: " + reason);
     for (const auto& room : rooms()) {
@@ -194,6 +196,7 @@ void Host::drain(const std::string& reason, std::chrono::milliseconds deadline) 
 void Host::end(const std::string& reason) {
   asio::post(accept_strand_, [this, reason] {
     draining_ = true;
+    drain_at_ns_ = 0;
     gatehouse_->drain("the server goes away: " + reason);
     for (const auto& room : rooms()) {
       room->act(LifeAct::kEnd, reason, std::chrono::milliseconds(0), {});

@@ -85,7 +85,8 @@ class Host {
   /// None, or a room, which must not outlive the host.
   std::shared_ptr<HostedRoom> find(const std::string& name) const;
   std::vector<std::shared_ptr<HostedRoom>> rooms() const;  ///< By name.
-  /// Nobody comes in any more, and the rooms end after `deadline` or when they are empty.
+  /// Nobody comes in any more, and the rooms end after `deadline` or when they are empty. Asked
+  /// again, the nearest deadline counts.
   void drain(const std::string& reason, std::chrono::milliseconds deadline);
   /// All rooms end now.
   void end(const std::string& reason);
@@ -136,6 +137,8 @@ class Host {
   std::optional<Listener> listener_;
   std::int64_t epoch_ns_ = 0;
   std::atomic<bool> draining_{false};
+  std::int64_t drain_at_ns_ = 0;  ///< On the accept strand, while it drains.
+  int signals_heard_ = 0;         ///< Likewise; those that end the process.
   std::atomic<std::int64_t> drain_ms_;
   std::map<std::string, std::vector<Entrant>> joining_;  ///< Rooms that are being made for them.
 

@@ -1,4 +1,7 @@
 #include <gtest/gtest.h>
+#include <unistd.h>
+
+#include <csignal>
 
 #include "tests/server/host_fixture.hpp"
 
@@ -14,10 +17,9 @@ class HostDrain : public testing::Test {
  protected:
   /// @param rate_millihertz  Of its ticks; 0: the scene's.
   void open(std::uint32_t rate_millihertz = 0) {
-    HostOptions options = quiet_host(lines_);
-    options.rooms.push_back({"arena", two_seat_settings()});
-    options.rooms[0].settings.tick_rate_millihertz = rate_millihertz;
-    server_.emplace(std::move(options));
+    options_.rooms.push_back({"arena", two_seat_settings()});
+    options_.rooms[0].settings.tick_rate_millihertz = rate_millihertz;
+    server_.emplace(std::move(options_));
     peer_.emplace(server_->port());
     peer_->greet("arena");
     ASSERT_TRUE(peer_->wait_for<protocol::Welcome>());
@@ -35,6 +37,7 @@ class HostDrain : public testing::Test {
   }
 
   HostLines lines_;
+  HostOptions options_ = quiet_host(lines_);
   std::optional<RunningHost> server_;
   std::optional<HostPeer> peer_;
 };
@@ -65,6 +68,30 @@ TEST_F(HostDrain, KeepsItsDeadlineWhereTicksAreRare) {
   EXPECT_EQ(farewell(), "maintenance");
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 10s);
   EXPECT_TRUE(server_->report().good);
+}
+
+TEST_F(HostDrain, AskedForAgainEndsAtTheNearestDeadline) {
+  open();
+  host().drain("first", 1h);
+  EXPECT_EQ(told_ms(), kHourMs);
+  host().drain("second", 200ms);
+  EXPECT_EQ(told_ms(), 200u);
+  host().drain("third", 1h);
+  EXPECT_EQ(farewell(), "second");
+  EXPECT_TRUE(server_->report().good);
+}
+
+TEST_F(HostDrain, OfAnAdminIsOnlyHastenedByTheFirstSignal) {
+  options_.catch_signals = true;
+  options_.drain = 1h;
+  open();
+  host().drain("an admin", 2h);
+  EXPECT_EQ(told_ms(), 2 * kHourMs);
+  ASSERT_EQ(::kill(::getpid(), SIGTERM), 0);
+  EXPECT_EQ(told_ms(), kHourMs);
+  for (int i = 0; i < 5; ++i) ASSERT_TRUE(peer_->wait_for<protocol::InputFrame>());
+  ASSERT_EQ(::kill(::getpid(), SIGTERM), 0);
+  EXPECT_TRUE(server_->report().good);  // Though the peer has not hung up.
 }
 
 }  // namespace
