@@ -64,8 +64,8 @@ std::optional<LifeAct> life_act_of(const std::string& verb) {
 
 /// What is asked for, as far as the path says.
 struct Admin::Act {
-  explicit Act(const HttpRequest& request) : fields(request.body_cut ? "" : request.body) {
-    if (request.body_cut) fields.complain("body: it ends before all of it has come");
+  explicit Act(const HttpBody& body) : fields(body.text) {
+    if (body.status == 400) fields.complain(body.mistake);
   }
   std::string room;
   std::string verb;
@@ -130,11 +130,9 @@ HttpReply Admin::handle(const HttpRequest& request) {
     note_stranger(request);
     return reply_of(401, {{"error", "Authorization: it must be \"Bearer \" and the token"}});
   }
-  if (request.body_too_large) {
-    return reply_of(413, {{"error", "body: more than " + std::to_string(HttpServer::kBodyBytesMax) +
-                                        " bytes"}});
-  }
-  Act act(request);
+  const HttpBody body = request.method == "POST" ? request.read_body() : HttpBody{};
+  if (body.status > 400) return reply_of({body.status, body.mistake});
+  Act act(body);
   HttpReply reply = route(request, act);
   if (request.method != "GET") audit(request, act, reply);
   return reply;

@@ -10,20 +10,57 @@
 namespace cycloid::server {
 namespace {
 
-/// Reads what the request announces, below 0 where it does not say, up to the bound.
-void read_body(mg_connection* connection, long long announced, HttpRequest& request) {
-  constexpr auto kMost = static_cast<long long>(HttpServer::kBodyBytesMax);
-  request.body_too_large = announced > kMost;
-  char piece[4096];
-  while (!request.body_too_large) {
-    const int count = mg_read(connection, piece, sizeof piece);
-    if (count <= 0) break;
-    request.body.append(piece, static_cast<std::size_t>(count));
-    request.body_too_large = std::cmp_greater(request.body.size(), kMost);
+/// What comes behind the head of a request.
+///
+/// The library waits anew for each byte, so it is asked for one at a time: who sends one now and
+/// then is given up at the deadline all the same.
+class BodyReader {
+ public:
+  using Clock = std::chrono::steady_clock;
+
+  BodyReader(mg_connection* connection, std::chrono::milliseconds patience)
+      : connection_(connection),
+        announced_(mg_get_request_info(connection)->content_length),
+        patience_(patience),
+        deadline_(Clock::now() + patience) {}
+
+  HttpBody read() {
+    if (announced_ > kMost) return too_large();
+    std::string text;
+    int count = 1;
+    for (char byte = 0; std::cmp_less_equal(text.size(), kMost) && (count = next(byte)) > 0;) {
+      text += byte;
+    }
+    if (std::cmp_greater(text.size(), kMost)) return too_large();
+    if (std::cmp_greater_equal(text.size(), announced_)) return {std::move(text), 200, ""};
+    if (count < 0) return {"", 400, "body: it ends before all of it has come"};
+    return {"", 408,
+            "body: not all of it has come within " + std::to_string(patience_.count()) + " ms"};
   }
-  if (request.body_too_large) request.body.clear();
-  request.body_cut = !request.body_too_large && std::cmp_less(request.body.size(), announced);
-}
+
+  /// Takes what is still on its way: it would reset the connection as it closes, and with it the
+  /// reply.
+  void hear_out() {
+    char byte = 0;
+    for (long long i = 0; i < 2 * kMost && announced_ > 0 && next(byte) > 0; ++i) {
+    }
+  }
+
+ private:
+  static constexpr auto kMost = static_cast<long long>(HttpServer::kBodyBytesMax);
+
+  static HttpBody too_large() {
+    return {"", 413, "body: more than " + std::to_string(kMost) + " bytes"};
+  }
+
+  /// 1, 0 at the deadline or where nothing is left of the body, -1 at the end of the connection.
+  int next(char& byte) { return Clock::now() < deadline_ ? mg_read(connection_, &byte, 1) : 0; }
+
+  mg_connection* connection_;
+  long long announced_;  ///< Below 0 where the request does not say.
+  std::chrono::milliseconds patience_;
+  Clock::time_point deadline_;
+};
 
 void send(mg_connection* connection, const HttpReply& reply) {
   mg_response_header_start(connection, reply.status);
@@ -39,37 +76,44 @@ void send(mg_connection* connection, const HttpReply& reply) {
   (void)mg_write(connection, reply.body.data(), reply.body.size());
 }
 
-int on_request(mg_connection* connection, void* data) {
+}  // namespace
+
+int HttpServer::on_request(mg_connection* connection, void* data) {
+  const auto* server = static_cast<const HttpServer*>(data);
   const mg_request_info* info = mg_get_request_info(connection);
+  // The library would wait for all that was announced, however slowly it comes.
+  mg_disable_connection_keep_alive(connection);
+  BodyReader body(connection, server->patience_);
   HttpRequest request;
   request.method = info->request_method;
   request.path = info->local_uri == nullptr ? "" : info->local_uri;
   request.from = std::string(info->remote_addr) + ":" + std::to_string(info->remote_port);
   if (const char* word = mg_get_header(connection, "Authorization")) request.authorization = word;
-  read_body(connection, info->content_length, request);
+  request.read_body = [&body] { return body.read(); };
   HttpReply reply;
   try {
-    reply = (*static_cast<HttpServer::Handler*>(data))(request);
+    reply = server->handler_(request);
   } catch (const std::exception& error) {  // Of memory: the library's C code must not see it.
     reply = {500, "text/plain", error.what(), ""};
   }
   send(connection, reply);
+  body.hear_out();
   return reply.status;
 }
 
-}  // namespace
-
-HttpServer::HttpServer(const std::string& address, std::uint16_t port, Handler handler)
-    : handler_(std::move(handler)) {
+HttpServer::HttpServer(const std::string& address, std::uint16_t port, Handler handler,
+                       std::chrono::milliseconds patience)
+    : handler_(std::move(handler)), patience_(patience) {
   const bool v6 = address.find(':') != std::string::npos;
   const std::string at = (v6 ? "[" + address + "]" : address) + ":" + std::to_string(port);
   const std::string threads = std::to_string(kConnections);
+  const std::string timeout_ms = std::to_string(patience.count());
   const char* options[] = {"listening_ports",
                            at.c_str(),
                            "num_threads",
                            threads.c_str(),
                            "request_timeout_ms",
-                           "5000",
+                           timeout_ms.c_str(),
                            "enable_keep_alive",
                            "no",
                            "max_request_size",
@@ -90,7 +134,7 @@ HttpServer::HttpServer(const std::string& address, std::uint16_t port, Handler h
     const int why = errno == 0 ? EADDRNOTAVAIL : errno;
     throw std::system_error(why, std::generic_category(), at + " (operation)");
   }
-  mg_set_request_handler(context_, "/", on_request, &handler_);
+  mg_set_request_handler(context_, "/", on_request, this);
 }
 
 HttpServer::~HttpServer() {

@@ -1,22 +1,30 @@
 #pragma once
 
+#include <chrono>
 #include <cstdint>
 #include <functional>
 #include <map>
 #include <string>
 
+struct mg_connection;
 struct mg_context;
 
 namespace cycloid::server {
+
+struct HttpBody {
+  std::string text;     ///< "" where it could not be had.
+  int status = 200;     ///< 400, 408 or 413 then, and
+  std::string mistake;  ///< why, as a sentence.
+};
 
 struct HttpRequest {
   std::string method;  ///< "GET"
   std::string path;    ///< Decoded, without a query.
   std::string authorization;
-  std::string body;
-  bool body_too_large = false;  ///< Then `body` is empty.
-  bool body_cut = false;        ///< It ended before all that was announced had come.
-  std::string from;             ///< Address and port.
+  std::string from;  ///< Address and port.
+  /// Reads what comes behind the head, for which the thread waits: only for whom that is worth it.
+  /// To be called once at most, and before the handler returns.
+  std::function<HttpBody()> read_body;
 };
 
 struct HttpReply {
@@ -31,13 +39,16 @@ class HttpServer {
  public:
   using Handler = std::function<HttpReply(const HttpRequest&)>;
   static constexpr std::size_t kBodyBytesMax = 65536;
-  /// Served side by side, a thread each: so many must be silent, for 5 s, before others wait.
+  /// Served side by side, a thread each: so many must be silent before others wait.
   static constexpr int kConnections = 64;
+  static constexpr std::chrono::milliseconds kPatience{5000};
 
   /// @param port  0: any.
   /// @param handler  Called on the server's threads, several at a time.
+  /// @param patience  With a head, and from there with the whole of a body.
   /// @throws std::system_error where the address cannot be bound.
-  HttpServer(const std::string& address, std::uint16_t port, Handler handler);
+  HttpServer(const std::string& address, std::uint16_t port, Handler handler,
+             std::chrono::milliseconds patience = kPatience);
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
   ~HttpServer();
@@ -45,7 +56,10 @@ class HttpServer {
   std::uint16_t port() const;
 
  private:
+  static int on_request(mg_connection* connection, void* data);
+
   Handler handler_;
+  std::chrono::milliseconds patience_;
   mg_context* context_ = nullptr;
 };
 

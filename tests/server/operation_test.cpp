@@ -1,10 +1,6 @@
-#include "server/operation/operation.hpp"
-
 #include <gtest/gtest.h>
 #include <unistd.h>
 
-#include <asio/connect.hpp>
-#include <asio/ip/tcp.hpp>
 #include <chrono>
 #include <filesystem>
 #include <fstream>
@@ -17,63 +13,12 @@
 #include <vector>
 
 #include "server/operation/admin_fields.hpp"
-#include "tests/server/host_fixture.hpp"
-#include "tests/server/http_fixture.hpp"
+#include "tests/server/operation_fixture.hpp"
 
 namespace cycloid::server {
 namespace {
 
 using namespace std::chrono_literals;
-
-class OperationTest : public testing::Test {
- protected:
-  void open(HostOptions options, bool with_admin = true) {
-    server_.emplace(std::move(options));
-    OperationOptions operation;
-    operation.missed_ticks_max = 12;
-    if (with_admin) {
-      AdminOptions admin;
-      admin.token = kAdminToken;
-      admin.snapshot_directory = testing::TempDir();
-      operation.admin = std::move(admin);
-    }
-    operation_.emplace(server_->host(), std::move(operation));
-  }
-  void open(bool with_admin = true) {
-    HostOptions options = quiet_host(lines_);
-    options.rooms.push_back({"arena", two_seat_settings()});
-    open(std::move(options), with_admin);
-  }
-  /// @returns the folder that the room writes its logs into.
-  std::filesystem::path open_with_logs(const std::string& name) {
-    const std::filesystem::path folder =
-        testing::TempDir() + "/cycloid-" + name + "-" + std::to_string(::getpid());
-    std::filesystem::create_directories(folder);
-    HostOptions options = quiet_host(lines_);
-    options.rooms.push_back({"arena", two_seat_settings()});
-    options.rooms[0].settings.log_directory = folder;
-    open(std::move(options));
-    return folder;
-  }
-  Answer get(const std::string& path) { return http(operation_->port(), "GET", path); }
-  Answer post(const std::string& path, const std::string& body = "") {
-    return http(operation_->port(), "POST", path, body);
-  }
-  std::string error_of(const Answer& answer) {
-    return nlohmann::json::parse(answer.body).value("error", "");
-  }
-  std::string close() {
-    operation_.reset();
-    server_->stop();
-    (void)server_->report();
-    server_.reset();
-    return lines_.text();
-  }
-
-  HostLines lines_;
-  std::optional<RunningHost> server_;
-  std::optional<Operation> operation_;
-};
 
 TEST_F(OperationTest, MetricsAreWhatPrometheusReads) {
   open();
@@ -292,39 +237,6 @@ TEST_F(OperationTest, EveryMistakeOfAnAdminGetsAStatusAndNamesTheField) {
   EXPECT_NE(wrong.head.find("Allow: POST"), std::string::npos);
   EXPECT_EQ(server_->host().rooms().size(), 1u);
   EXPECT_EQ(server_->host().find("arena")->stage(), LifeStage::kRunning);
-}
-
-TEST_F(OperationTest, WhoSaysNothingKeepsNobodyWaiting) {
-  open();
-  asio::io_context io;
-  std::vector<asio::ip::tcp::socket> silent;
-  for (int i = 0; i < HttpServer::kConnections / 2; ++i)
-    silent.emplace_back(io).connect({asio::ip::address_v4::loopback(), operation_->port()});
-  const auto begin = std::chrono::steady_clock::now();
-  EXPECT_EQ(get("/livez").status, 200);
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(4))
-      << "it waited for one of them to be given up";
-}
-
-TEST_F(OperationTest, ABodyThatIsCutOffIsAMistakeAndNothingIsDone) {
-  open();
-  const auto cut = [&](const std::string& path, const std::string& body) {
-    const std::string head = "POST " + path + " HTTP/1.1\r\nAuthorization: Bearer " + kAdminToken;
-    return http_bytes(operation_->port(), head + "\r\nContent-Length: 22\r\n\r\n" + body, true);
-  };
-  for (const char* path : {"/admin/drain", "/admin/rooms/arena/lock", "/admin/rooms/arena/end"}) {
-    for (const char* body : {"", "{}", "{\"deadline_ms\""}) {
-      const Answer answer = cut(path, body);
-      EXPECT_EQ(answer.status, 400) << path << body;
-      EXPECT_EQ(error_of(answer), "body: it ends before all of it has come") << path << body;
-    }
-  }
-  const auto room = server_->host().find("arena");
-  ASSERT_TRUE(room);
-  EXPECT_EQ(room->stage(), LifeStage::kRunning);
-  EXPECT_FALSE(room->locked());
-  EXPECT_FALSE(server_->host().draining());
-  EXPECT_NE(close().find(R"("audit":"drain","from")"), std::string::npos) << "on record, too";
 }
 
 TEST_F(OperationTest, ADrainWithoutADeadlineLastsAsLongAsTheHostSaysNow) {
