@@ -13,7 +13,7 @@ namespace cycloid::server {
 
 struct HttpBody {
   std::string text;     ///< "" where it could not be had.
-  int status = 200;     ///< 400, 408 or 413 then, and
+  int status = 200;     ///< 400, 408, 411 or 413 then, and
   std::string mistake;  ///< why, as a sentence.
 };
 

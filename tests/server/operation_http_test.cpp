@@ -58,5 +58,17 @@ TEST_F(OperationTest, ABodyThatIsCutOffIsAMistakeAndNothingIsDone) {
   EXPECT_NE(close().find(R"("audit":"drain","from")"), std::string::npos) << "on record, too";
 }
 
+TEST_F(OperationTest, ABodyInChunksIsRefusedForItMayBeCutOff) {
+  open();
+  const std::string head = std::string("POST /admin/drain HTTP/1.1\r\nAuthorization: Bearer ") +
+                           kAdminToken + "\r\nTransfer-Encoding: chunked\r\n\r\n";
+  for (const char* body : {"", "2\r\n{}\r\n", "2\r\n{}\r\n0\r\n\r\n"}) {
+    const Answer answer = http_bytes(operation_->port(), head + body, true);
+    EXPECT_EQ(answer.status, 411) << body;
+    EXPECT_TRUE(error_of(answer).starts_with("body: it comes in chunks")) << answer.body;
+  }
+  EXPECT_FALSE(server_->host().draining());
+}
+
 }  // namespace
 }  // namespace cycloid::server
