@@ -112,6 +112,7 @@ HostReport Host::run(std::stop_token stop) {
     run_pool();
   }
   slow_.join();
+  over_.request_stop();
   if (thrown_) std::rethrow_exception(thrown_);
   const std::lock_guard lock(directory_mutex_);
   for (const Meter& refusals : meters_->refusals) report_.refusals += refusals.get();

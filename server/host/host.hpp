@@ -91,6 +91,8 @@ class Host {
   /// All rooms end now.
   void end(const std::string& reason);
   bool draining() const { return draining_; }
+  /// Stopped once `run` has ended: what was asked of a room and not answered by then never is.
+  std::stop_token over() const { return over_.get_token(); }
   /// "", or which room has not made a tick for so many ticks though one was due.
   std::string stuck(std::uint32_t ticks_max) const;
   void set_limits(const HostLimits& limits);
@@ -148,6 +150,7 @@ class Host {
   HostLimits limits_;  ///< Under the directory's lock.
   HostReport report_;  ///< Likewise.
 
+  std::stop_source over_;
   std::mutex thrown_mutex_;
   std::exception_ptr thrown_;
 };

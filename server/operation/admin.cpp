@@ -2,7 +2,9 @@
 
 #include <sodium.h>
 
+#include <atomic>
 #include <future>
+#include <stop_token>
 #include <utility>
 
 #include "protocol/text.hpp"
@@ -51,6 +53,20 @@ Json to_json(const HostedRoom& room) {
           {"clients", meters.clients.get()},
           {"durable", meters.durable.get() == 1}};
 }
+
+/// What an act waits for; only what is said first counts.
+class FirstAnswer {
+ public:
+  std::future<ActResult> given() { return promise_.get_future(); }
+  /// Any thread.
+  void give(ActResult result) {
+    if (!said_.exchange(true)) promise_.set_value(std::move(result));
+  }
+
+ private:
+  std::promise<ActResult> promise_;
+  std::atomic<bool> said_{false};
+};
 
 std::optional<LifeAct> life_act_of(const std::string& verb) {
   for (const LifeAct act : {LifeAct::kLock, LifeAct::kUnlock, LifeAct::kPause, LifeAct::kResume,
@@ -203,9 +219,13 @@ HttpReply Admin::act_on_room(const HttpRequest& request, Act& act) {
 }
 
 ActResult Admin::wait(const std::function<void(HostedRoom::Done)>& ask) const {
-  const auto promise = std::make_shared<std::promise<ActResult>>();
-  auto result = promise->get_future();
-  ask([promise](ActResult done) { promise->set_value(std::move(done)); });
+  const auto answer = std::make_shared<FirstAnswer>();
+  auto result = answer->given();
+  // Nothing of the host runs any more then, so no room would say anything.
+  const std::stop_callback on_over(host_.over(), [answer] {
+    answer->give({503, "the server goes away"});
+  });
+  ask([answer](ActResult done) { answer->give(std::move(done)); });
   if (result.wait_for(options_.patience) != std::future_status::ready) {
     return {504, "the room has not answered within " + std::to_string(options_.patience.count()) +
                      " ms; the act may still happen"};

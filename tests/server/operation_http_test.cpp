@@ -70,5 +70,16 @@ TEST_F(OperationTest, ABodyInChunksIsRefusedForItMayBeCutOff) {
   EXPECT_FALSE(server_->host().draining());
 }
 
+TEST_F(OperationTest, AnActThatNoRoomAnswersAnyMoreIsRefusedAtOnce) {
+  open();
+  server_->stop();
+  (void)server_->report();
+  const auto begin = std::chrono::steady_clock::now();
+  const Answer answer = post("/admin/rooms", R"({"name": "duel-1", "template": "hall"})");
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, 4s);
+  EXPECT_EQ(answer.status, 503);
+  EXPECT_EQ(error_of(answer), "the server goes away");
+}
+
 }  // namespace
 }  // namespace cycloid::server
