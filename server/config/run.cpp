@@ -3,6 +3,7 @@
 #include <spdlog/logger.h>
 
 #include <algorithm>
+#include <memory>
 #include <mutex>
 #include <utility>
 
@@ -69,6 +70,9 @@ class Reloader {
 HostReport run_configured(ConfiguredServer server,
                           const std::function<void(const ListeningAt&)>& on_listening,
                           std::stop_token stop) {
+  // Before the host, which begins logs.
+  std::unique_ptr<HttpServer> http;
+  if (server.config.operation_on) http = Operation::bind(server.config.operation);
   Reloader reloader(server);
   Host* running = nullptr;
   HostOptions options = server.config.host;
@@ -81,7 +85,7 @@ HostReport run_configured(ConfiguredServer server,
     operation.admin->reload = [&] { return reloader.reload(host); };
   }
   std::optional<Operation> watched;
-  if (server.config.operation_on) watched.emplace(host, std::move(operation));
+  if (http != nullptr) watched.emplace(host, std::move(operation), std::move(http));
   if (on_listening) {
     on_listening({host.port(), watched ? watched->port() : std::uint16_t{0}});
   }

@@ -91,20 +91,29 @@ int HttpServer::on_request(mg_connection* connection, void* data) {
   request.from = std::string(info->remote_addr) + ":" + std::to_string(info->remote_port);
   if (const char* word = mg_get_header(connection, "Authorization")) request.authorization = word;
   request.read_body = [&body] { return body.read(); };
-  HttpReply reply;
-  try {
-    reply = server->handler_(request);
-  } catch (const std::exception& error) {  // Of memory: the library's C code must not see it.
-    reply = {500, "text/plain", error.what(), ""};
-  }
+  const HttpReply reply = server->reply_to(request);
   send(connection, reply);
   body.hear_out();
   return reply.status;
 }
 
-HttpServer::HttpServer(const std::string& address, std::uint16_t port, Handler handler,
+HttpReply HttpServer::reply_to(const HttpRequest& request) const {
+  if (!serves_) return {503, "text/plain", "the server starts\n", ""};
+  try {
+    return handler_(request);
+  } catch (const std::exception& error) {  // Of memory: the library's C code must not see it.
+    return {500, "text/plain", error.what(), ""};
+  }
+}
+
+void HttpServer::serve(Handler handler) {
+  handler_ = std::move(handler);
+  serves_ = true;
+}
+
+HttpServer::HttpServer(const std::string& address, std::uint16_t port,
                        std::chrono::milliseconds patience)
-    : handler_(std::move(handler)), patience_(patience) {
+    : patience_(patience) {
   const bool v6 = address.find(':') != std::string::npos;
   const std::string at = (v6 ? "[" + address + "]" : address) + ":" + std::to_string(port);
   const std::string threads = std::to_string(kConnections);

@@ -1,5 +1,6 @@
 #pragma once
 
+#include <atomic>
 #include <chrono>
 #include <cstdint>
 #include <functional>
@@ -43,22 +44,27 @@ class HttpServer {
   static constexpr int kConnections = 64;
   static constexpr std::chrono::milliseconds kPatience{5000};
 
+  /// Binds the address; whoever comes before `serve` is told 503.
   /// @param port  0: any.
-  /// @param handler  Called on the server's threads, several at a time.
   /// @param patience  With a head, and from there with the whole of a body.
   /// @throws std::system_error where the address cannot be bound.
-  HttpServer(const std::string& address, std::uint16_t port, Handler handler,
+  HttpServer(const std::string& address, std::uint16_t port,
              std::chrono::milliseconds patience = kPatience);
   HttpServer(const HttpServer&) = delete;
   HttpServer& operator=(const HttpServer&) = delete;
   ~HttpServer();
 
+  /// @param handler  Called on the server's threads, several at a time. Once.
+  void serve(Handler handler);
   std::uint16_t port() const;
 
  private:
   static int on_request(mg_connection* connection, void* data);
 
+  HttpReply reply_to(const HttpRequest& request) const;
+
   Handler handler_;
+  std::atomic<bool> serves_{false};  ///< From then on nobody writes the handler.
   std::chrono::milliseconds patience_;
   mg_context* context_ = nullptr;
 };

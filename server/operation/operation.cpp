@@ -15,13 +15,17 @@ std::unique_ptr<Admin> make_admin(Host& host, const OperationOptions& options) {
 
 }  // namespace
 
-Operation::Operation(Host& host, OperationOptions options)
+std::unique_ptr<HttpServer> Operation::bind(const OperationOptions& options) {
+  return std::make_unique<HttpServer>(options.address, options.port);
+}
+
+Operation::Operation(Host& host, OperationOptions options, std::unique_ptr<HttpServer> server)
     : host_(host),
       options_(std::move(options)),
       metrics_(host),
       admin_(make_admin(host, options_)),
-      server_(options_.address, options_.port,
-              [this](const HttpRequest& request) { return handle(request); }) {
+      server_(std::move(server)) {
+  server_->serve([this](const HttpRequest& request) { return handle(request); });
   host_.logger()->info("metrics and health at {} port {}", options_.address, port());
 }
 

@@ -18,11 +18,15 @@ struct OperationOptions {
 /// What others watch and steer a host by, over HTTP: /metrics, /livez, /readyz and /admin/...
 class Operation {
  public:
-  /// @param host  Outlives this.
+  /// To be called before the host is made: where the address cannot be had, no log is begun.
   /// @throws std::system_error where the address cannot be bound.
-  Operation(Host& host, OperationOptions options);
+  static std::unique_ptr<HttpServer> bind(const OperationOptions& options);
 
-  std::uint16_t port() const { return server_.port(); }
+  /// @param host  Outlives this.
+  /// @param server  As `bind` gives it.
+  Operation(Host& host, OperationOptions options, std::unique_ptr<HttpServer> server);
+
+  std::uint16_t port() const { return server_->port(); }
 
  private:
   HttpReply handle(const HttpRequest& request);
@@ -31,7 +35,7 @@ class Operation {
   OperationOptions options_;
   HostMetrics metrics_;
   std::unique_ptr<Admin> admin_;
-  HttpServer server_;  ///< Last: it calls the others until it is gone.
+  std::unique_ptr<HttpServer> server_;  ///< Last: it calls the others until it is gone.
 };
 
 }  // namespace cycloid::server

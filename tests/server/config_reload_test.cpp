@@ -131,5 +131,26 @@ TEST_F(ConfigReloadTest, ADrainLastsAsLongAsTheFileSaysNow) {
   EXPECT_EQ(notice->value, 70'000u);
 }
 
+TEST(ConfiguredServer, ThatCannotHaveItsOperationPortBeginsNoLog) {
+  const ConfigFile file("port-taken");
+  const std::filesystem::path folder = file.path() + "-logs";
+  std::filesystem::create_directories(folder);
+  asio::io_context io;
+  const asio::ip::tcp::acceptor taken(io, {asio::ip::address_v4::loopback(), 0});
+  const std::string port = std::to_string(taken.local_endpoint().port());
+  file.write("[server]\nport = 0\n[operation]\nport = " + port +
+             "\n[template.duel]\nscene = \"two-seats\"\nlog_directory = \"" + folder.string() +
+             "\"\n[[room]]\nname = \"arena\"\ntemplate = \"duel\"\n");
+  HostLines lines;
+  ConfiguredServer server;
+  const ConfigResult read = read_config_file(file.path(), load_for_test);
+  ASSERT_TRUE(read.config) << config_mistakes_text(file.path(), read.mistakes);
+  server.config = *read.config;
+  server.config.host.logger = lines.logger();
+  EXPECT_THROW((void)run_configured(server, {}), std::system_error);
+  EXPECT_TRUE(std::filesystem::is_empty(folder));
+  std::filesystem::remove_all(folder);
+}
+
 }  // namespace
 }  // namespace cycloid::server

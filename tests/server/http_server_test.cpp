@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <chrono>
+#include <optional>
 #include <thread>
 #include <vector>
 
@@ -13,23 +14,36 @@ namespace {
 
 using namespace std::chrono_literals;
 
-/// A server with little patience; it says how many bytes it was sent, and reads none at "/".
+/// Says how many bytes it was sent, and reads none at "/".
+HttpReply reply_to(const HttpRequest& request) {
+  if (request.path == "/") return {200, "text/plain", "hello", ""};
+  const HttpBody body = request.read_body();
+  const std::string said = std::to_string(body.text.size());
+  return {body.status, "text/plain", body.status == 200 ? said : body.mistake, ""};
+}
+
 class HttpServerTest : public testing::Test {
  protected:
-  static HttpReply reply_to(const HttpRequest& request) {
-    if (request.path == "/") return {200, "text/plain", "hello", ""};
-    const HttpBody body = request.read_body();
-    const std::string said = std::to_string(body.text.size());
-    return {body.status, "text/plain", body.status == 200 ? said : body.mistake, ""};
+  void open(std::chrono::milliseconds patience) {
+    server_.emplace("127.0.0.1", std::uint16_t{0}, patience);
+    server_->serve(reply_to);
   }
   Answer post(const std::string& head, const std::string& body) {
-    return http_bytes(server_.port(), "POST /read HTTP/1.1\r\n" + head + "\r\n\r\n" + body);
+    return http_bytes(server_->port(), "POST /read HTTP/1.1\r\n" + head + "\r\n\r\n" + body);
   }
 
-  HttpServer server_{"127.0.0.1", 0, reply_to, 300ms};
+  std::optional<HttpServer> server_;
 };
 
+TEST(HttpServer, SaysThatItStartsUntilThereIsSomebodyToAnswer) {
+  HttpServer server("127.0.0.1", 0);
+  EXPECT_EQ(http(server.port(), "GET", "/").status, 503);
+  server.serve([](const HttpRequest&) { return HttpReply{}; });
+  EXPECT_EQ(http(server.port(), "GET", "/").status, 200);
+}
+
 TEST_F(HttpServerTest, ReadsAsMuchAsIsAnnounced) {
+  open(20s);
   EXPECT_EQ(post("Content-Length: 0", "").body, "0");
   EXPECT_EQ(post("Content-Length: 3", "abcdef").body, "3");
   EXPECT_EQ(post("Content-Length: 65536", std::string(65536, 'x')).body, "65536");
@@ -37,12 +51,13 @@ TEST_F(HttpServerTest, ReadsAsMuchAsIsAnnounced) {
 }
 
 TEST_F(HttpServerTest, ABodyHasADeadlineAsAWhole) {
+  open(300ms);
   EXPECT_EQ(post("Content-Length: 3", "ab").status, 408);
   asio::io_context io;
   std::vector<asio::ip::tcp::socket> slow;
   const std::string head = "POST /read HTTP/1.1\r\nContent-Length: 60000\r\n\r\n";
   for (int i = 0; i < HttpServer::kConnections; ++i) {
-    slow.emplace_back(io).connect({asio::ip::address_v4::loopback(), server_.port()});
+    slow.emplace_back(io).connect({asio::ip::address_v4::loopback(), server_->port()});
     asio::write(slow.back(), asio::buffer(head));
   }
   // For 10 s at most, so that a server without a deadline fails and does not hang.
@@ -54,7 +69,7 @@ TEST_F(HttpServerTest, ABodyHasADeadlineAsAWhole) {
     }
   });
   const auto begin = std::chrono::steady_clock::now();
-  EXPECT_EQ(http(server_.port(), "GET", "/").status, 200);
+  EXPECT_EQ(http(server_->port(), "GET", "/").status, 200);
   EXPECT_LT(std::chrono::steady_clock::now() - begin, 8s) << "it waited for all of the bodies";
 }
 

@@ -27,7 +27,8 @@ class OperationTest : public testing::Test {
       admin.snapshot_directory = testing::TempDir();
       operation.admin = std::move(admin);
     }
-    operation_.emplace(server_->host(), std::move(operation));
+    auto bound = Operation::bind(operation);
+    operation_.emplace(server_->host(), std::move(operation), std::move(bound));
   }
   void open(bool with_admin = true) {
     HostOptions options = quiet_host(lines_);
