@@ -118,6 +118,7 @@ void HostedRoom::open_room() {
   hooks.inquiry = inquiry_.get();
   hooks.now_ns = [this] { return std::max(start_ns_, process_now_ns()); };
   hooks.notice = [this](const Notice& said) { take_notice(said); };
+  hooks.lateness = [this](std::uint64_t late_ns) { meters_.lateness.add(late_ns); };
   if (log_->kept()) hooks.log = log_.get();
   hooks.random = system_random();
   room_.emplace(options, std::move(*simulation_), std::move(hooks));
@@ -204,12 +205,10 @@ void HostedRoom::arm_at(std::int64_t process_ns) {
 void HostedRoom::on_tick() {
   if (!room_ || life_.stage() == LifeStage::kEnded) return;
   const std::int64_t begin_ns = process_now_ns();
-  const std::int64_t late_ns = begin_ns - room_->next_deadline_ns();
   const std::uint64_t before = room_->tick();
   room_->advance();              // In a pause too: whoever is there is heard and served.
   if (room_->tick() > before) {  // Else it waits for an input, stands still, or was rewound.
     const std::uint64_t made = room_->tick() - before;
-    meters_.lateness.add(static_cast<std::uint64_t>(std::max<std::int64_t>(late_ns, 0)));
     const auto took_ns = static_cast<std::uint64_t>(process_now_ns() - begin_ns);
     meters_.tick_time.add(took_ns / made, made);
   }

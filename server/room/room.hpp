@@ -51,7 +51,9 @@ struct Notice {
 struct RoomHooks {
   std::function<std::int64_t()> now_ns;         ///< Never goes back.
   std::function<void(const Notice&)> notice{};  ///< May be empty.
-  LogSink* log = nullptr;                       ///< May be none.
+  /// How long after its deadline each tick begins, those that are caught up too. May be empty.
+  std::function<void(std::uint64_t late_ns)> lateness{};
+  LogSink* log = nullptr;  ///< May be none.
   /// Fills with bytes that nobody can guess. Empty: seats cannot be resumed.
   std::function<void(std::span<std::byte>)> random{};
   DesyncInquiry* inquiry = nullptr;  ///< May be none.

@@ -50,6 +50,7 @@ void Room::make_tick() {
   const std::int64_t late = begin - pacer_.due_ns(simulation_.tick() + 1);
   statistics_.last_lateness_ns = static_cast<std::uint64_t>(std::max<std::int64_t>(late, 0));
   statistics_.lateness_ns.add(statistics_.last_lateness_ns);
+  if (hooks_.lateness) hooks_.lateness(statistics_.last_lateness_ns);
   protocol::InputFrame frame = close_frame();
   std::vector<scenes::SeatInput> inputs;
   inputs.reserve(frame.seats.size());

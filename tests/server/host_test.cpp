@@ -311,5 +311,27 @@ TEST(Host, ADiskThatHangsIsSeenAsARoomThatIsStuck) {
   std::filesystem::remove(log);
 }
 
+TEST(Host, TicksThatAreCaughtUpCountAsLateToo) {
+  HostLines lines;
+  const std::string log =
+      testing::TempDir() + "cycloid-late-" + std::to_string(::getpid()) + ".log";
+  std::filesystem::remove(log);
+  std::atomic<bool> hangs{false};
+  RunningHost server(waiting_host(lines, log, hangs));
+  const auto room = server.host().find("arena");
+  const RoomMeters& meters = room->meters();
+  ASSERT_TRUE(eventually([&] { return meters.tick.get() > 3; }));
+  hangs = true;
+  ASSERT_TRUE(eventually([&] { return !server.host().stuck(6).empty(); }));
+  hangs = false;
+  ASSERT_TRUE(eventually([&] { return meters.catch_up_ticks.get() > 3; }));
+  ASSERT_TRUE(server.act("arena", LifeAct::kPause).ok());
+  EXPECT_EQ(meters.lateness.count(), meters.tick.get());
+  EXPECT_EQ(meters.tick_time.count(), meters.tick.get());
+  server.stop();
+  EXPECT_TRUE(server.report().good);
+  std::filesystem::remove(log);
+}
+
 }  // namespace
 }  // namespace cycloid::server

@@ -64,9 +64,8 @@ TEST_F(OperationTest, MetricsAreWhatPrometheusReads) {
   EXPECT_EQ(values.at("cycloid_room_clients{room=\"arena\"}"), 1.0);
   EXPECT_EQ(values.at("cycloid_rooms{stage=\"running\"}"), 1.0);
   EXPECT_EQ(values.at("cycloid_refusals_total{room=\"\",code=\"no_such_room\"}"), 1.0);
-  const double lateness = values.at("cycloid_room_tick_lateness_seconds_count{room=\"arena\"}");
-  EXPECT_GE(lateness, 1.0);  // One for ticks that were made in one go.
-  EXPECT_GE(values.at("cycloid_room_tick_seconds_count{room=\"arena\"}"), lateness);
+  EXPECT_GE(values.at("cycloid_room_tick_lateness_seconds_count{room=\"arena\"}"), 10.0);
+  EXPECT_GE(values.at("cycloid_room_tick_seconds_count{room=\"arena\"}"), 10.0);
   for (const char* name :
        {"cycloid_room_inputs_replaced_total", "cycloid_room_hash_mismatches_total",
         "cycloid_room_desync_inquiries_skipped_total", "cycloid_desync_reports_dropped_total",
