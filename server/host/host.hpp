@@ -143,6 +143,7 @@ class Host {
   int signals_heard_ = 0;         ///< Likewise; those that end the process.
   std::atomic<std::int64_t> drain_ms_;
   std::map<std::string, std::vector<Entrant>> joining_;  ///< Rooms that are being made for them.
+  RefillBucket cannot_lines_{kClientLines, 0};  ///< Of rooms that joiners asked for in vain.
 
   mutable std::mutex directory_mutex_;
   std::map<std::string, std::shared_ptr<HostedRoom>> directory_;  ///< None: still being made.

@@ -1,6 +1,7 @@
 #include <utility>
 
 #include "server/host/host.hpp"
+#include "server/host/process_time.hpp"
 
 // How rooms come to be: by an act, or by the first who names them.
 
@@ -16,6 +17,13 @@ constexpr int kNoneMore = 503;
 RoomFound found_by(protocol::Refusal code) {
   if (code == protocol::Refusal::kRoomLocked) return RoomFound::kLocked;
   return code == protocol::Refusal::kRoomFull ? RoomFound::kFull : RoomFound::kDraining;
+}
+
+/// What a peer is told of a room that is not made. Why a disk or a scene fails is the operator's
+/// business: it may name paths.
+protocol::Refused refusal_of(const ActResult& made) {
+  if (made.status == kNoneMore) return {protocol::Refusal::kRoomFull, made.text};
+  return {protocol::Refusal::kNoSuchRoom, "the server cannot make this room"};
 }
 
 }  // namespace
@@ -175,13 +183,15 @@ void Host::let_joiners_in(const std::string& name, const ActResult& made) {
   auto waiting = joining_.extract(name);
   if (waiting.empty()) return;
   const auto room = find(name);
-  const auto code =
-      made.status == kNoneMore ? protocol::Refusal::kRoomFull : protocol::Refusal::kNoSuchRoom;
+  const protocol::Refused refused = refusal_of(made);
+  if (room == nullptr && made.text != refused.reason && cannot_lines_.take(1, process_now_ns())) {
+    options_.logger->error("room {} cannot be made: {}", name, made.text);
+  }
   for (Entrant& joiner : waiting.mapped()) {
     if (room != nullptr) {
       room->enter(std::move(joiner));
     } else {
-      gatehouse_->turn_away(std::move(joiner), {code, made.text});
+      gatehouse_->turn_away(std::move(joiner), refused);
     }
   }
 }

@@ -136,14 +136,21 @@ TEST_F(HostAdmission, WhoIsRefusedByARoomFillsNoLog) {
 
 TEST_F(HostAdmission, WhoIsTurnedAwayBehindTheGateIsOnRecord) {
   HostOptions options = quiet_host(lines_);
-  options.templates["duel"].settings.log_directory = testing::TempDir() + "/no/such/folder";
+  const std::string folder = testing::TempDir() + "/no/such/folder";
+  options.templates["duel"].settings.log_directory = folder;
   server_.emplace(std::move(options));
-  EXPECT_EQ(refused(hello("duel:1")), Refusal::kNoSuchRoom);
+  HostPeer peer(server_->port());
+  peer.send(hello("duel:1"));
+  const auto word = peer.wait_for<protocol::Refused>();
+  ASSERT_TRUE(word);
+  EXPECT_EQ(word->code, Refusal::kNoSuchRoom);
+  EXPECT_EQ(word->reason, "the server cannot make this room") << "paths are nobody's business";
   EXPECT_EQ(server_->host().meters().rooms_made.get(), 0u);
   const auto code = static_cast<std::size_t>(Refusal::kNoSuchRoom);
   EXPECT_EQ(server_->host().meters().refusals[code].get(), 1u);
   const std::string said = close();
   EXPECT_NE(said.find("refused 127.0.0.1: "), std::string::npos) << said;
+  EXPECT_NE(said.find("room duel:1 cannot be made: " + folder), std::string::npos) << said;
 }
 
 /// Whose files are made when the test says so.
