@@ -192,6 +192,13 @@ std::optional<Gate::Fault> Gate::check_token(const GateTime& now, Admission& adm
   return {};
 }
 
+void Gate::give_back_token(const Admission& admission) {
+  if (options_.tokens == TokenPolicy::kIgnored || admission.hello.token.empty()) return;
+  // It was verified when it was used; since then its key may have been taken away.
+  const auto read = read_unverified(admission.hello.token);
+  if (const auto* used = std::get_if<UnverifiedToken>(&read)) nonces_.give_back(used->token.nonce);
+}
+
 std::optional<Gate::Fault> Gate::check_room(const Admission& admission) {
   const std::string& room = admission.hello.room;
   const RoomVerdict verdict = find_room_(room, admission);

@@ -26,4 +26,11 @@ NonceStore::Answer NonceStore::use(const TokenNonce& nonce, std::int64_t forget_
   return answer;
 }
 
+void NonceStore::give_back(const TokenNonce& nonce) {
+  const auto found = expiries_.find(nonce);
+  if (found == expiries_.end()) return;
+  by_expiry_.erase({found->second, nonce});
+  expiries_.erase(found);
+}
+
 }  // namespace cycloid::server

@@ -25,6 +25,8 @@ class NonceStore {
   Answer check(const TokenNonce& nonce, std::int64_t forget_at_unix_s, std::int64_t now_unix_s);
   /// kFresh: it is used from now on until `forget_at_unix_s` has passed. Else nothing changes.
   Answer use(const TokenNonce& nonce, std::int64_t forget_at_unix_s, std::int64_t now_unix_s);
+  /// It is fresh again, because its token has let nobody in. One that is not used stays so.
+  void give_back(const TokenNonce& nonce);
   std::size_t size() const { return expiries_.size(); }
 
  private:

@@ -175,6 +175,7 @@ void Gatehouse::note(const Caller& caller, const GateRefused& refused) {
 }
 
 void Gatehouse::turn_away(Entrant entrant, const protocol::Refused& refused) {
+  gate_.give_back_token(entrant.admission);
   const auto caller = std::make_shared<Caller>();
   caller->stream = std::move(entrant.stream);
   caller->count = std::move(entrant.count);

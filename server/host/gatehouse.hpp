@@ -46,7 +46,8 @@ class Gatehouse {
   Gatehouse(Strand strand, std::shared_ptr<HostMeters> meters, GatehouseOptions options);
 
   void receive(asio::ip::tcp::socket socket);
-  /// One word, then the connection is closed as soon as the peer has had time to read it.
+  /// One word, then the connection is closed as soon as the peer has had time to read it. It was in
+  /// no room: its token is good once more.
   void turn_away(Entrant entrant, const protocol::Refused& refused);
   /// The same at once, for want of a descriptor.
   void turn_away_now(asio::ip::tcp::socket& socket, const protocol::Refused& refused);

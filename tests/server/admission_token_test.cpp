@@ -225,5 +225,17 @@ TEST(NonceStore, WhatWasForgottenStaysUsedWhenTheClockIsSetBack) {
   EXPECT_EQ(store.use(nonce_of(1), 100, 0), NonceStore::Answer::kUsed);
 }
 
+TEST(NonceStore, WhatIsGivenBackIsFreshOnce) {
+  NonceStore store(1);
+  store.give_back(nonce_of(1));
+  ASSERT_EQ(store.use(nonce_of(1), 100, 0), NonceStore::Answer::kFresh);
+  store.give_back(nonce_of(2));
+  EXPECT_EQ(store.use(nonce_of(1), 100, 0), NonceStore::Answer::kUsed);
+  store.give_back(nonce_of(1));
+  EXPECT_EQ(store.size(), 0u);
+  EXPECT_EQ(store.use(nonce_of(2), 200, 0), NonceStore::Answer::kFresh) << "there is room again";
+  EXPECT_EQ(store.use(nonce_of(1), 100, 201), NonceStore::Answer::kFresh);
+}
+
 }  // namespace
 }  // namespace cycloid::server

@@ -106,6 +106,25 @@ TEST_F(HostAdmission, ATokenIsStillGoodAfterTheRoomHadNoPlace) {
   }));
 }
 
+TEST_F(HostAdmission, ATokenIsStillGoodAfterTheRoomCouldNotBeMade) {
+  const std::filesystem::path folder =
+      testing::TempDir() + "/cycloid-unmade-" + std::to_string(::getpid());
+  std::filesystem::remove_all(folder);
+  HostOptions options = guarded();
+  options.templates["duel"].settings.log_directory = folder;
+  server_.emplace(std::move(options));
+  AdmissionToken token = token_of_today(1);
+  token.room = "duel:1";
+  protocol::Hello first = hello("duel:1");
+  first.token = sign_token(token, issuer_key());
+  EXPECT_EQ(refused(first), Refusal::kNoSuchRoom);
+  std::filesystem::create_directories(folder);
+  const auto peer = let_in(first);
+  EXPECT_EQ(refused(first), Refusal::kTokenUsed);
+  (void)close();
+  std::filesystem::remove_all(folder);
+}
+
 TEST_F(HostAdmission, NewKeysHoldForTokensFromThenOn) {
   server_.emplace(guarded());
   const SigningKey other = SigningKey::generate(seeded_random(2));
