@@ -18,6 +18,15 @@ void check_address(const std::string& key, const std::string& text, const Compla
   if (error) complain(key, "\"" + text + "\" is no IP address");
 }
 
+void check_operation_address(const ServerConfig& config, const Complain& complain) {
+  const std::string key = "operation.address";
+  check_address(key, config.operation.address, complain);
+  asio::error_code error;
+  const auto address = asio::ip::make_address(config.operation.address, error);
+  if (error || !address.is_v6() || !config.operation_on || HttpServer::knows_ipv6()) return;
+  complain(key, "it is of IPv6, without which the CivetWeb of this machine was built");
+}
+
 void check_admin(ServerConfig& config, const Complain& complain) {
   const std::string& directory = config.snapshot_directory;
   std::error_code unknown;  // What may not be looked at is no directory for us.
@@ -100,7 +109,7 @@ void check_tls(ServerConfig& config, const Complain& complain) {
 
 void check_config(ServerConfig& config, const Complain& complain) {
   check_address("server.address", config.host.address, complain);
-  check_address("operation.address", config.operation.address, complain);
+  check_operation_address(config, complain);
   check_tokens(config, complain);
   check_tls(config, complain);
   check_admin(config, complain);

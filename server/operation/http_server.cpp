@@ -111,6 +111,10 @@ void HttpServer::serve(Handler handler) {
   serves_ = true;
 }
 
+bool HttpServer::knows_ipv6() {
+  return mg_check_feature(MG_FEATURES_IPV6) != 0;
+}
+
 HttpServer::HttpServer(const std::string& address, std::uint16_t port,
                        std::chrono::milliseconds patience)
     : patience_(patience) {

@@ -44,6 +44,9 @@ class HttpServer {
   static constexpr int kConnections = 64;
   static constexpr std::chrono::milliseconds kPatience{5000};
 
+  /// Whether addresses of IPv6 can be bound: the library may be built without.
+  static bool knows_ipv6();
+
   /// Binds the address; whoever comes before `serve` is told 503.
   /// @param port  0: any.
   /// @param patience  With a head, and from there with the whole of a body.

@@ -200,6 +200,19 @@ TEST(Config, TheAdminNeedsATokenAndStaysAtHome) {
   EXPECT_EQ(keys_of("snapshot_directory = \"/no/such\"\n"), "admin.snapshot_directory ");
 }
 
+TEST(Config, AnOperationAddressOfIpv6NeedsALibraryThatKnowsIt) {
+  const auto mistakes = [](const std::string& enabled) {
+    const std::string text = "[operation]\naddress = \"::1\"\nenabled = " + enabled + "\n";
+    return read_config(text + kConfigRooms, load_for_test).mistakes;
+  };
+  EXPECT_TRUE(mistakes("false").empty());
+  const auto found = mistakes("true");
+  ASSERT_EQ(found.size(), HttpServer::knows_ipv6() ? 0u : 1u);
+  if (found.empty()) return;
+  EXPECT_EQ(found[0].key, "operation.address");
+  EXPECT_NE(found[0].reason.find("IPv6"), std::string::npos) << found[0].reason;
+}
+
 TEST(Config, TokensNeedKeysAndTlsItsFiles) {
   const auto keys_of = [&](const std::string& head) {
     std::string keys;
