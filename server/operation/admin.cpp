@@ -80,15 +80,18 @@ std::optional<LifeAct> life_act_of(const std::string& verb) {
 
 /// What is asked for, as far as the path says.
 struct Admin::Act {
-  explicit Act(const HttpBody& body) : fields(body.text) {
-    if (body.status == 400) fields.complain(body.mistake);
-  }
+  explicit Act(const std::string& body) : fields(body) {}
   std::string room;
   std::string verb;
   AdminFields fields;
 };
 
-Admin::Admin(Host& host, AdminOptions options) : host_(host), options_(std::move(options)) {}
+Admin::Admin(Host& host, AdminOptions options)
+    : host_(host),
+      options_(std::move(options)),
+      record_(host.logger()->clone(host.logger()->name())) {
+  record_->set_level(spdlog::level::info);
+}
 
 bool equal_secrets(const std::string& a, const std::string& b) {
   ready_sodium();
@@ -138,7 +141,7 @@ void Admin::note_stranger(const HttpRequest& request) {
                      {"from", request.from},
                      {"status", 401},
                      {"times", std::exchange(strangers_unsaid_, 0)}};
-  host_.logger()->warn(line.dump());
+  record_->warn(line.dump());
 }
 
 HttpReply Admin::handle(const HttpRequest& request) {
@@ -147,9 +150,9 @@ HttpReply Admin::handle(const HttpRequest& request) {
     return reply_of(401, {{"error", "Authorization: it must be \"Bearer \" and the token"}});
   }
   const HttpBody body = request.method == "POST" ? request.read_body() : HttpBody{};
-  if (body.status > 400) return reply_of({body.status, body.mistake});
-  Act act(body);
-  HttpReply reply = route(request, act);
+  Act act(body.text);
+  HttpReply reply =
+      body.status == 200 ? route(request, act) : reply_of({body.status, body.mistake});
   if (request.method != "GET") audit(request, act, reply);
   return reply;
 }
@@ -159,7 +162,7 @@ void Admin::audit(const HttpRequest& request, const Act& act, const HttpReply& r
   if (act.verb.empty()) line["audit"] = request.path.substr(0, 128);
   if (!act.room.empty()) line["room"] = act.room;
   if (!act.fields.all().empty()) line["fields"] = act.fields.all();
-  host_.logger()->info(line.dump(-1, ' ', false, Json::error_handler_t::replace));
+  record_->info(line.dump(-1, ' ', false, Json::error_handler_t::replace));
 }
 
 HttpReply Admin::route(const HttpRequest& request, Act& act) {

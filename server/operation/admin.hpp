@@ -23,7 +23,8 @@ struct AdminOptions {
 };
 
 /// What an admin may ask over HTTP; docs/server.md has the table. Every act, done or not, leaves
-/// one line in the log; every mistake gets a status and a sentence that names the field.
+/// one line in the log, whatever its level; every mistake gets a status and a sentence that names
+/// the field.
 class Admin {
  public:
   Admin(Host& host, AdminOptions options);
@@ -48,6 +49,7 @@ class Admin {
 
   Host& host_;
   AdminOptions options_;
+  std::shared_ptr<spdlog::logger> record_;  ///< The log again, with every level of it.
   std::mutex strangers_mutex_;
   std::chrono::steady_clock::time_point stranger_said_{};
   std::uint64_t strangers_unsaid_ = 0;

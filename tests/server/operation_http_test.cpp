@@ -55,7 +55,8 @@ TEST_F(OperationTest, ABodyThatIsCutOffIsAMistakeAndNothingIsDone) {
   EXPECT_EQ(room->stage(), LifeStage::kRunning);
   EXPECT_FALSE(room->locked());
   EXPECT_FALSE(server_->host().draining());
-  EXPECT_NE(close().find(R"("audit":"drain","from")"), std::string::npos) << "on record, too";
+  EXPECT_NE(close().find(R"("audit":"/admin/drain","from")"), std::string::npos)
+      << "on record, too";
 }
 
 TEST_F(OperationTest, ABodyInChunksIsRefusedForItMayBeCutOff) {

@@ -154,6 +154,19 @@ TEST_F(OperationTest, AnAdminSteersRoomsAndEveryActIsOnRecord) {
   EXPECT_NE(lines.find(R"("fields":{"reason":"afk","seat":1})"), std::string::npos);
 }
 
+TEST_F(OperationTest, ActsAreOnRecordWhateverTheLevelOfTheLog) {
+  open();
+  server_->host().logger()->set_level(spdlog::level::err);
+  EXPECT_EQ(post("/admin/rooms/arena/lock").status, 200);
+  EXPECT_EQ(post("/admin/rooms/arena/end", std::string(70000, ' ')).status, 413);
+  EXPECT_EQ(http(operation_->port(), "POST", "/admin/drain", "", "wrong").status, 401);
+  const std::string lines = close();
+  EXPECT_NE(lines.find(R"("audit":"lock")"), std::string::npos) << lines;
+  EXPECT_NE(lines.find(R"("audit":"/admin/rooms/arena/end")"), std::string::npos) << lines;
+  EXPECT_NE(lines.find(R"("audit":"refused")"), std::string::npos) << lines;
+  EXPECT_EQ(lines.find("is gone"), std::string::npos) << lines;
+}
+
 TEST_F(OperationTest, AReservedSeatIsKeptForWhoItIsFor) {
   open();
   EXPECT_EQ(post("/admin/rooms/arena/reserve", R"({"seat": 0, "identity": "ann", "ticks": 100000})")
