@@ -63,7 +63,8 @@ class BodyReader {
   Clock::time_point deadline_;
 };
 
-void send(mg_connection* connection, const HttpReply& reply) {
+/// @param head_only  The body, whose length is told, is not sent.
+void send(mg_connection* connection, const HttpReply& reply, bool head_only) {
   mg_response_header_start(connection, reply.status);
   mg_response_header_add(connection, "Content-Type", reply.type.c_str(), -1);
   mg_response_header_add(connection, "Content-Length", std::to_string(reply.body.size()).c_str(),
@@ -74,7 +75,7 @@ void send(mg_connection* connection, const HttpReply& reply) {
     mg_response_header_add(connection, "Allow", reply.allow.c_str(), -1);
   }
   mg_response_header_send(connection);
-  (void)mg_write(connection, reply.body.data(), reply.body.size());
+  if (!head_only) (void)mg_write(connection, reply.body.data(), reply.body.size());
 }
 
 }  // namespace
@@ -92,7 +93,7 @@ int HttpServer::on_request(mg_connection* connection, void* data) {
   if (const char* word = mg_get_header(connection, "Authorization")) request.authorization = word;
   request.read_body = [&body] { return body.read(); };
   const HttpReply reply = server->reply_to(request);
-  send(connection, reply);
+  send(connection, reply, request.method == "HEAD");
   body.hear_out();
   return reply.status;
 }

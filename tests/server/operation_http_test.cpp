@@ -20,6 +20,17 @@ TEST_F(OperationTest, WhoSaysNothingKeepsNobodyWaiting) {
       << "it waited for one of them to be given up";
 }
 
+TEST_F(OperationTest, OfAHeadOnlyTheHeadIsSent) {
+  open();
+  for (const char* path : {"/livez", "/metrics", "/nothing", "/admin/rooms"}) {
+    const Answer whole = get(path);
+    const Answer head = http(operation_->port(), "HEAD", path);
+    EXPECT_EQ(head.body, "") << path;
+    EXPECT_NE(head.head.find("Content-Length: "), std::string::npos) << path;
+    EXPECT_GT(whole.body.size(), 0u) << path;
+  }
+}
+
 TEST_F(OperationTest, WhoMayNotActIsAnsweredBeforeItsBodyHasCome) {
   open();
   for (const char* line : {"GET /livez", "POST /livez", "POST /admin/drain"}) {
