@@ -2,6 +2,7 @@
 
 #include <civetweb.h>
 
+#include <algorithm>
 #include <cerrno>
 #include <exception>
 #include <system_error>
@@ -63,6 +64,16 @@ class BodyReader {
   Clock::time_point deadline_;
 };
 
+std::string decoded(const char* uri) {
+  const std::string path(uri == nullptr ? "" : uri);
+  // As long as before, and a NUL behind it.
+  std::string into(path.size() + 1, '\0');
+  const int size = mg_url_decode(path.data(), static_cast<int>(path.size()), into.data(),
+                                 static_cast<int>(into.size()), 0);
+  into.resize(static_cast<std::size_t>(std::max(size, 0)));
+  return into;
+}
+
 /// @param head_only  The body, whose length is told, is not sent.
 void send(mg_connection* connection, const HttpReply& reply, bool head_only) {
   mg_response_header_start(connection, reply.status);
@@ -88,7 +99,7 @@ int HttpServer::on_request(mg_connection* connection, void* data) {
   BodyReader body(connection, server->patience_);
   HttpRequest request;
   request.method = info->request_method;
-  request.path = info->local_uri == nullptr ? "" : info->local_uri;
+  request.path = decoded(info->local_uri);
   request.from = std::string(info->remote_addr) + ":" + std::to_string(info->remote_port);
   if (const char* word = mg_get_header(connection, "Authorization")) request.authorization = word;
   request.read_body = [&body] { return body.read(); };
@@ -99,6 +110,9 @@ int HttpServer::on_request(mg_connection* connection, void* data) {
 }
 
 HttpReply HttpServer::reply_to(const HttpRequest& request) const {
+  if (request.path.find('\0') != std::string::npos) {
+    return {400, "text/plain", "path: it holds a NUL\n", ""};
+  }
   if (!serves_) return {503, "text/plain", "the server starts\n", ""};
   try {
     return handler_(request);
@@ -129,6 +143,8 @@ HttpServer::HttpServer(const std::string& address, std::uint16_t port,
                            threads.c_str(),
                            "request_timeout_ms",
                            timeout_ms.c_str(),
+                           "decode_url",  // It would end a path at a NUL.
+                           "no",
                            "enable_keep_alive",
                            "no",
                            "max_request_size",

@@ -31,6 +31,17 @@ TEST_F(OperationTest, OfAHeadOnlyTheHeadIsSent) {
   }
 }
 
+TEST_F(OperationTest, APathWithANulIsAMistakeAndNotTheOneBeforeIt) {
+  open();
+  EXPECT_EQ(get("/readyz").status, 200);
+  EXPECT_EQ(get("/ready%7A").status, 200);
+  EXPECT_EQ(get("/readyz%00x").status, 400);
+  EXPECT_EQ(post("/admin/rooms/arena/lock%00").status, 400);
+  EXPECT_EQ(post("/admin/rooms/arena/lock%2500").status, 404);
+  EXPECT_FALSE(server_->host().find("arena")->locked());
+  EXPECT_EQ(post("/admin/rooms/ar%65na/lock").status, 200);
+}
+
 TEST_F(OperationTest, WhoMayNotActIsAnsweredBeforeItsBodyHasCome) {
   open();
   for (const char* line : {"GET /livez", "POST /livez", "POST /admin/drain"}) {
