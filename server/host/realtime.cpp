@@ -22,7 +22,8 @@ std::string reason() {
 std::string make_thread_realtime() {
   sched_param parameters{};
   parameters.sched_priority = kRealtimePriority;
-  if (::sched_setscheduler(0, SCHED_FIFO, &parameters) == 0) return "";
+  // Not for threads that this one starts, such as the writer of a branched log.
+  if (::sched_setscheduler(0, SCHED_FIFO | SCHED_RESET_ON_FORK, &parameters) == 0) return "";
   return "SCHED_FIFO: " + reason();
 }
 
