@@ -156,18 +156,19 @@ static Entry<3> enter_faces(const Core<3>& core, const Vec<3>& from, const Vec<3
   return entry;
 }
 
-/// The separation of cores on a way. After a step cores that touch do so in the plane that the step
-/// led to, so `normal` stays.
+/// The separation of cores on a way. After a step cores that touch, or that rounding put a hair
+/// into each other, do so in the plane that the step led to, so `normal` stays.
 static Separation<3> separation_on_way(const Core<3>& core, const Core<3>& moved, bool stepped,
                                        const Vec<3>& normal) {
   if (!stepped) return separation_of_cores(core, moved);
   const NearestPoints nearest = nearest_points(core, moved);
-  if (nearest.enclosed) return separation_across(core, moved);
+  const bool meets = nearest.enclosed || nearest.touching;
   Separation<3> result{};
-  result.normal = nearest.touching ? normal : nearest.normal;
-  result.distance = nearest.touching ? 0.0f : nearest.distance;
+  result.normal = meets ? normal : nearest.normal;
+  result.distance = meets ? 0.0f : nearest.distance;
   result.distance -= core.radius + moved.radius;
-  result.point_a = nearest.on_a + core.radius * result.normal;
+  const Vec<3> on_core = nearest.enclosed ? touched_point(core, moved, normal) : nearest.on_a;
+  result.point_a = on_core + core.radius * result.normal;
   return result;
 }
 
