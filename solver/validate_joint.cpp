@@ -187,7 +187,9 @@ bool is_reachable(const Joint<D>& joint) {
     if (!within(def.length, 0.0f, kMeasuredMax)) return false;
     def.length = 0.0f;
   }
-  if (joint.kind == JointKind::kDistance && def.length == 0.0f) def.length = kSizeMin;
+  // A rope may be created shorter than a rod, and keeps its length when its limits are off.
+  if (joint.kind == JointKind::kDistance && within(def.length, 0.0f, kSizeMin))
+    def.length = kSizeMin;
   return validate(def).ok();
 }
 

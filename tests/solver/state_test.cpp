@@ -184,6 +184,26 @@ TEST(Snapshot, RestoreFromMemoryAndFromBytesGoesOnBitForBit) {
   }
 }
 
+TEST(Snapshot, OfARopeShorterThanAnyRodIsReadBackWhenItsLimitsAreOff) {
+  for (const float length : {0.0f, 1e-30f, 5e-5f, 2.0f}) {
+    World<2> world = make_world<2>();
+    JointDef<2> rope;
+    rope.kind = JointKind::kDistance;
+    rope.body_a = add_at<2>(world, {{0.0f, 0.0f}}, ball<2>(0.5f));
+    rope.body_b = add_at<2>(world, {{2.0f, 0.0f}}, ball<2>(0.5f));
+    rope.length = length;
+    rope.limit_enabled = true;
+    rope.upper = 3.0f;
+    const JointId id = world.create_joint(rope).value();
+    EXPECT_TRUE(world.set_limits(id, false, 0.0f, 3.0f).ok());
+    std::vector<std::byte> bytes;
+    world.encode(bytes);
+    World<2> other = make_world<2>();
+    EXPECT_TRUE(other.decode(bytes).ok()) << length;
+    EXPECT_EQ(other.digest(), world.digest()) << length;
+  }
+}
+
 TEST(Snapshot, TruncationAtEveryByteIsRefusedAndChangesNothing) {
   World<2> world = busy_world();
   std::vector<std::byte> bytes;
