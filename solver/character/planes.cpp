@@ -5,6 +5,8 @@
 #include <cstdint>
 #include <vector>
 
+#include "solver/direct/wide.hpp"
+
 namespace cycloid::solver {
 
 template <int D>
@@ -67,7 +69,7 @@ struct ActiveSet {
   Vec<D> line = Vec<D>::zero();  ///< Unit, of the edge where two planes meet in space.
 };
 
-// Where normals are closer than this [sine, or volume] to dependent, the combination is left out.
+// Where two normals are closer than this [sine] to dependent, the combination is left out.
 static constexpr float kDependent = 1.0e-6f;
 
 static bool invert(ActiveSet<2>& set, const std::array<Vec<2>, 2>& n) {
@@ -96,22 +98,37 @@ static Vec<3> precise_cross(const Vec<3>& a, const Vec<3>& b) {
   return result;
 }
 
-static bool invert(ActiveSet<3>& set, const std::array<Vec<3>, 3>& n) {
-  if (set.count == 1) {
-    set.duals[0] = (1.0f / dot(n[0], n[0])) * n[0];
-    return true;
-  }
-  const bool pair = set.count == 2;
-  const Vec<3> third = pair ? precise_cross(n[0], n[1]) : n[2];
+static bool invert_pair(ActiveSet<3>& set, const std::array<Vec<3>, 3>& n) {
+  const Vec<3> third = precise_cross(n[0], n[1]);
   const Vec<3> by_first = cross(n[1], third);
   const float det = dot(n[0], by_first);
-  if (!(abs(det) > (pair ? kDependent * kDependent : kDependent))) return false;
+  if (!(abs(det) > kDependent * kDependent)) return false;
   set.duals[0] = (1.0f / det) * by_first;
   set.duals[1] = (1.0f / det) * cross(third, n[0]);
-  if (pair)
-    set.line = (1.0f / sqrt(dot(third, third))) * third;
-  else
-    set.duals[2] = (1.0f / det) * cross(n[0], n[1]);
+  set.line = (1.0f / sqrt(dot(third, third))) * third;
+  return true;
+}
+
+/// In double, which holds the products of floats exactly: three nearly parallel walls may have a
+/// corner even where the volume of their normals is less than a float tells from 0.
+static bool invert_triple(ActiveSet<3>& set, const std::array<Vec<3>, 3>& n) {
+  constexpr Wide kFlat = 1.0e-13;
+  Vec<3, Wide> wide[3];
+  for (int i = 0; i < 3; ++i)
+    for (int k = 0; k < 3; ++k) wide[i][k] = Wide{n[i][k]};
+  const Wide det = dot(wide[0], cross(wide[1], wide[2]));
+  if (!(det * det > kFlat * kFlat)) return false;
+  for (int i = 0; i < 3; ++i) {
+    const Vec<3, Wide> across = cross(wide[(i + 1) % 3], wide[(i + 2) % 3]);
+    for (int k = 0; k < 3; ++k) set.duals[i][k] = static_cast<float>(across[k] / det);
+  }
+  return true;
+}
+
+static bool invert(ActiveSet<3>& set, const std::array<Vec<3>, 3>& n) {
+  if (set.count == 2) return invert_pair(set, n);
+  if (set.count == 3) return invert_triple(set, n);
+  set.duals[0] = (1.0f / dot(n[0], n[0])) * n[0];
   return true;
 }
 

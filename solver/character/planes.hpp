@@ -46,6 +46,7 @@ Vec<D> sweep_planes(const Vec<D>& target, std::span<const CollisionPlane<D>> pla
 /// Exact whatever the corner: of the planes that decide so far (at most D) and the most violated
 /// one, every combination is tried and the feasible one closest to the target decides next; ties
 /// go to the lowest index. At most `kPlanePivotsMax` such rounds. Redundant planes change no bit.
+/// Planes within 1e-6 rad of parallel, or three of a volume below 1e-13, have no corner.
 ///
 /// Where no position is in no solid, or a push would exceed its limit: `kPlaneSweepsMax` sweeps of
 /// projected Gauss-Seidel with accumulated pushes in [0, push_limit], and where rigid planes are

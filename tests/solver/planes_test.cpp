@@ -79,8 +79,8 @@ TEST(Planes, OnePlaneProjectsAndAFreeTargetStays) {
   EXPECT_EQ(planes[0].push, 0.0f);
 }
 
-/// Adds to `x` what puts it onto the k active planes, by Gram's matrix in double; false where that
-/// is singular.
+/// Adds to `x` what puts it onto the k active planes, in double: by Gram's matrix, or where they
+/// leave but a point by their own, which loses no digits. False where that is singular.
 template <int D>
 static bool correct(const std::vector<CollisionPlane<D>>& planes, const std::vector<int>& set,
                     Doubles& x) {
@@ -90,7 +90,8 @@ static bool correct(const std::vector<CollisionPlane<D>>& planes, const std::vec
     m[r][k] = planes[set[r]].offset;
     for (int a = 0; a < D; ++a) {
       m[r][k] -= planes[set[r]].normal[a] * x[a];
-      for (int c = 0; c < k; ++c)
+      if (k == D) m[r][a] = planes[set[r]].normal[a];
+      for (int c = 0; c < k && k < D; ++c)
         m[r][c] += double{planes[set[r]].normal[a]} * planes[set[c]].normal[a];
     }
   }
@@ -106,7 +107,8 @@ static bool correct(const std::vector<CollisionPlane<D>>& planes, const std::vec
       for (int c = p; c <= k; ++c) m[r][c] -= factor * m[p][c];
     }
   }
-  for (int r = 0; r < k; ++r)
+  for (int r = 0; r < k && k == D; ++r) x[r] += m[r][k] / m[r][r];
+  for (int r = 0; r < k && k < D; ++r)
     for (int a = 0; a < D; ++a) x[a] += m[r][k] / m[r][r] * planes[set[r]].normal[a];
   return true;
 }
@@ -203,6 +205,37 @@ TEST(Planes, AreSolvedAsByEnumerationInDouble) {
   // 1.1e-7 and 1.7e-7 were measured: the exact position rounded to float.
   EXPECT_LE(plane.largest_error, 2.0e-7);
   EXPECT_LE(space.largest_error, 2.0e-7);
+}
+
+/// What is called exact is the closest also between walls that meet half a degree from parallel.
+TEST(Planes, NearlyParallelOnesAreSolvedAsByEnumerationInDouble) {
+  std::mt19937 random(5);
+  int exact = 0;
+  int feasible = 0;
+  for (int i = 0; i < 5000; ++i) {
+    std::vector<CollisionPlane<3>> planes = random_planes<3>(random, 6);
+    for (std::size_t k = 0; k < 4; ++k) {
+      const float side = k % 2 == 0 ? 1.0f : -1.0f;
+      const Vec<3> lean = 1.0e-3f * planes[k].normal + Vec<3>{{0.0f, side, 0.0f}};
+      planes[k].normal = (1.0f / length(lean)) * lean;
+    }
+    const Vec<3> target = random_planes<3>(random, 1)[0].normal;
+    Doubles closest{};
+    const bool found = enumerate<3>(planes, target, closest);
+    const PlaneResult<3> result = solve_planes<3>(target, planes);
+    feasible += found ? 1 : 0;
+    if (!found || !result.exact) continue;
+    ++exact;
+    double error = 0.0;
+    double size = 1.0;
+    for (int a = 0; a < 3; ++a) {
+      error += std::pow(result.position[a] - closest[a], 2);
+      size += closest[a] * closest[a];
+    }
+    EXPECT_LE(std::sqrt(error / size), 1.0e-5) << i << " size " << std::sqrt(size);
+  }
+  EXPECT_GT(feasible, 2000);
+  EXPECT_EQ(exact, feasible);
 }
 
 TEST(Planes, DuplicatesChangeNoBit) {
