@@ -1,3 +1,4 @@
+#include "solver/direct/wide.hpp"
 #include "solver/queries/solid_queries.hpp"
 
 namespace cycloid::solver {
@@ -75,8 +76,32 @@ static Entry<3> enter_rod(const Core<3>& core, const Core<3>& probe, const Vec<3
   return best;
 }
 
-/// A ray against the free side of a triangle. The signs of a shared edge are computed alike for
-/// both its triangles, so that no ray slips between two.
+/// Whether a ray along `way` from the origin passes between the corners, seen from where they run
+/// counter-clockwise. Each corner is put onto a plane across the ray once, by itself and as floats,
+/// so that the products below are exact in double: all triangles around an edge or a corner then
+/// tell of one and the same plane, and no ray slips between them.
+/// Source: Woop, Benthin and Wald, "Watertight Ray/Triangle Intersection" (2013).
+static bool passes_between(const Vec<3> (&corners)[3], const Vec<3>& way) {
+  int z = abs(way[1]) > abs(way[0]) ? 1 : 0;
+  if (abs(way[2]) > abs(way[z])) z = 2;
+  const int axes[2] = {z < 2 ? z + 1 : 0, z > 0 ? z - 1 : 2};
+  Wide flat[3][2];
+  for (int k = 0; k < 2; ++k) {
+    const Wide lean = Wide{way[axes[k]]} / Wide{way[z]};
+    for (int i = 0; i < 3; ++i)
+      flat[i][k] = static_cast<float>(Wide{corners[i][axes[k]]} - lean * Wide{corners[i][z]});
+  }
+  bool has_area = false;
+  for (int i = 0; i < 3; ++i) {
+    const int j = i < 2 ? i + 1 : 0;
+    const Wide turn = flat[i][0] * flat[j][1] - flat[i][1] * flat[j][0];
+    if (way[z] > 0.0f ? turn > 0.0 : turn < 0.0) return false;
+    has_area = has_area || turn != 0.0;
+  }
+  return has_area;
+}
+
+/// A ray against the free side of a triangle.
 static Entry<3> enter_triangle(const Core<3>& core, const Vec<3>& from, const Vec<3>& translation) {
   Entry<3> entry{};
   const Vec<3> corners[3] = {core.vertices[0] - from, core.vertices[1] - from,
@@ -84,8 +109,7 @@ static Entry<3> enter_triangle(const Core<3>& core, const Vec<3>& from, const Ve
   const float approach = -dot(core.normals[0], translation);
   const float height = -dot(core.normals[0], corners[0]);
   if (approach <= 0.0f || height < -kTouch || height > approach) return entry;
-  for (std::uint32_t i = 0; i < 3; ++i)
-    if (dot(translation, cross(corners[i], corners[i < 2 ? i + 1 : 0])) > 0.0f) return entry;
+  if (!passes_between(corners, translation)) return entry;
   entry.hit = true;
   entry.fraction = max(height, 0.0f) / approach;
   entry.normal = core.normals[0];

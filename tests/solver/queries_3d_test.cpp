@@ -66,6 +66,25 @@ TEST(SolidQueries, RaysMeetTrianglesFromTheFreeSideAndSlipThroughNoSeam) {
   }
 }
 
+/// Rays straight through a corner of a height field, whichever way the six triangles there round.
+TEST(SolidQueries, RaysSlipThroughNoCornerOfAHeightField) {
+  World<3> world = make_world<3>();
+  BodyDef<3> def;
+  def.kind = BodyKind::kStatic;
+  ShapeDef<3> field;
+  field.kind = ShapeKind::kHeightField;
+  field.columns = 5;
+  field.cell = {1, 1};
+  field.heights.assign(25, 0.0f);
+  add(world, def, field);
+  for (int i = -40; i <= 40; ++i)
+    for (int k = -40; k <= 40; ++k) {
+      const Vec<3> lean = {{0.1f * static_cast<float>(i), 9, 0.1f * static_cast<float>(k)}};
+      const Vec<3> corner = {{2, 0, 1}};
+      EXPECT_TRUE(ray_cast_first(world.state(), corner + lean, corner - lean, {})) << i << " " << k;
+    }
+}
+
 TEST(SolidQueries, CastsOfBallsMeetFacesEdgesAndCorners) {
   const WorldState<3> box = state_of(solid_box({{1, 1, 1}}), {{5, 0, 0}});
   const auto fraction = [&](float y, float z) {
