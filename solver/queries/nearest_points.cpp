@@ -218,19 +218,4 @@ NearestPoints nearest_points(const Core<3>& a, const Core<3>& b) {
   return points_of(a, b, simplex, scale);
 }
 
-Vec<3> touched_point(const Core<3>& core, const Core<3>& probe, const Vec<3>& normal) {
-  constexpr int kTries = 16;
-  Core<3> moved = probe;
-  float out = kTouch;
-  NearestPoints nearest;
-  for (int i = 0; i < kTries; ++i) {
-    for (std::uint32_t k = 0; k < probe.count; ++k)
-      moved.vertices[k] = probe.vertices[k] + out * normal;
-    nearest = nearest_points(core, moved);
-    if (!nearest.enclosed) return nearest.on_a;
-    out *= 4.0f;
-  }
-  return nearest.on_a;
-}
-
 }  // namespace cycloid::solver

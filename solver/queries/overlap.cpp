@@ -41,7 +41,8 @@ std::vector<QueryHit<D>> overlap(const WorldState<D>& state, const Probe<D>& pro
     if (!(between.distance < margin)) return;
     // The free side, whatever neighbours a segment has.
     if (other.one_sided() && dot(between.normal, other.normals[0]) < 0.0f) return;
-    hits.push_back(hit_of(state, shape, pose.position, between.point_a, between.normal));
+    const Vec<D> point = surface_point(other, core, between);
+    hits.push_back(hit_of(state, shape, pose.position, point, between.normal));
     hits.back().separation = between.distance;
   };
   for_each_candidate(state, pose.position, swept_bounds(reach, Vec<D>::zero()), filter, test);

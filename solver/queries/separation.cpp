@@ -183,6 +183,7 @@ static Separation<2> across(const Core<2>& a, const Core<2>& b) {
   const Vec<2> deepest = other.vertices[axis.vertex];
   const Vec<2> on_reference = deepest + (reference_radius - axis.separation) * axis.normal;
   const Vec<2> on_other = deepest - other.radius * axis.normal;
+  result.by_axis = true;
   result.distance = axis.separation - (a.radius + b.radius);
   result.normal = flipped ? -axis.normal : axis.normal;
   result.point_a = flipped ? on_other : on_reference;

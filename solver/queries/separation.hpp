@@ -83,6 +83,7 @@ struct Separation {
   Vec<D> point_a;         ///< On the surface of a, m.
   Vec<D> point_b;
   bool crossing = false;  ///< The cores themselves overlap, not only their roundings.
+  bool by_axis = false;   ///< Points are told by a plane, on which they may lie beside the shapes.
 };
 
 /// The exact distance of two convex shapes, or for crossing cores the depth along the best edge
@@ -96,6 +97,17 @@ struct Separation {
 /// but no iteration that could stall. Ties go to the first found. @pre not two half-spaces.
 template <int D>
 Separation<D> separation_of(const Core<D>& a, const Core<D>& b);
+
+/// Where `probe` leaves the core of `a` that it overlaps by `depth` [m], when it moves along
+/// `normal` [unit, from a to the probe]: the point of that core nearest to the probe's once it is
+/// just out.
+template <int D>
+Vec<D> touched_point(const Core<D>& a, const Core<D>& probe, const Vec<D>& normal, float depth);
+
+/// The point of `between` on the surface of `a`; where its plane has it beside one of both, as it
+/// may where their faces are parallel, the point of `a` that the probe leaves last.
+template <int D>
+Vec<D> surface_point(const Core<D>& a, const Core<D>& probe, const Separation<D>& between);
 
 /// Whether a chain's segment or a mesh's triangle may be met along `normal` [unit, outwards]: on
 /// its free side and, where a neighbour continues it, between the normals of both. Other shapes:

@@ -152,6 +152,7 @@ Separation<3> separation_across(const Core<3>& a, const Core<3>& b) {
   if (!surface && a.count == 2) offer_line(b, a, true, axis);
   if (!axis.found) offer_way_apart(a, b, axis);
   Separation<3> result{};
+  result.by_axis = true;
   result.distance = axis.separation - (a.radius + b.radius);
   result.normal = axis.normal;
   result.point_a = axis.on_b + (a.radius - axis.separation) * axis.normal;

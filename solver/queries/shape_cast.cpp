@@ -156,7 +156,8 @@ std::vector<QueryHit<D>> shape_cast(const WorldState<D>& state, const Probe<D>& 
     const Separation<D> start = separation_of(core, moving);
     if (start.distance <= 0.0f && allows(core, start.normal)) {
       if (!(dot(start.normal, translation) < 0.0f)) return;
-      hits.push_back(hit_of(state, shape, pose.position, start.point_a, start.normal));
+      const Vec<D> point = surface_point(core, moving, start);
+      hits.push_back(hit_of(state, shape, pose.position, point, start.normal));
       hits.back().separation = start.distance;
       return;
     }

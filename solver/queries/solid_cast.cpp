@@ -184,14 +184,18 @@ static Entry<3> enter_faces(const Core<3>& core, const Vec<3>& from, const Vec<3
 /// into each other, do so in the plane that the step led to, so `normal` stays.
 static Separation<3> separation_on_way(const Core<3>& core, const Core<3>& moved, bool stepped,
                                        const Vec<3>& normal) {
-  if (!stepped) return separation_of_cores(core, moved);
+  if (!stepped) {
+    Separation<3> start = separation_of_cores(core, moved);
+    start.point_a = surface_point(core, moved, start);
+    return start;
+  }
   const NearestPoints nearest = nearest_points(core, moved);
   const bool meets = nearest.enclosed || nearest.touching;
   Separation<3> result{};
   result.normal = meets ? normal : nearest.normal;
   result.distance = meets ? 0.0f : nearest.distance;
   result.distance -= core.radius + moved.radius;
-  const Vec<3> on_core = nearest.enclosed ? touched_point(core, moved, normal) : nearest.on_a;
+  const Vec<3> on_core = nearest.enclosed ? touched_point(core, moved, normal, 0.0f) : nearest.on_a;
   result.point_a = on_core + core.radius * result.normal;
   return result;
 }

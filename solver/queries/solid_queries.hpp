@@ -33,10 +33,6 @@ Separation<3> separation_across(const Core<3>& a, const Core<3>& b);
 /// The nearest points where cores are apart, otherwise `separation_across`.
 Separation<3> separation_of_cores(const Core<3>& a, const Core<3>& b);
 
-/// Where `probe`, which is in `core`, leaves it along `normal` [unit, from core to probe]: the
-/// point of `core`, without its rounding, that is nearest to the probe when that has just come out.
-Vec<3> touched_point(const Core<3>& core, const Core<3>& probe, const Vec<3>& normal);
-
 /// As `enter`: by formula for a point or ball against a point or line, and for a ray against faces;
 /// otherwise by advancing along the separating plane, which cannot lead past the contact.
 Entry<3> enter_core(const Core<3>& core, const Core<3>& probe, const Vec<3>& translation);

@@ -129,4 +129,37 @@ TEST(SolidCasts, OfSharpProbesAgainstTrianglesAreThoseOfDoublePrecision) {
   EXPECT_GT(from_behind, 60);
 }
 
+/// Faces that are parallel tie in all their corners, of which some lie far beside the smaller
+/// shape.
+TEST(SolidCasts, AndOverlapsTellAPointOnTheShapeMetWhereFacesAreParallel) {
+  std::mt19937 random(37);
+  for (int i = 0; i < 500; ++i) {
+    const Rotation<3> turn = i % 2 == 0 ? identity_rotation<3>() : random_rotation(random);
+    const Vec<3> half = {
+        {uniform(random, 0.1f, 1), uniform(random, 0.1f, 1), uniform(random, 0.1f, 1)}};
+    const WorldState<3> state = state_of(solid_box(half), Vec<3>::zero(), turn);
+    const float wide_half = uniform(random, 1, 10);
+    const Probe<3> probe = block_probe({{wide_half, 1, uniform(random, 0.2f, 10)}});
+    const float depth = uniform(random, 0.001f, 0.05f);
+    const Vec<3> aside = {
+        {uniform(random, -1, 1), half[1] + 1 - depth, uniform(random, -0.2f, 0.2f)}};
+    const Pose<3> pose{rotate(turn, aside), turn};
+    const Vec<3> up = rotate(turn, Vec<3>{{0, 1, 0}});
+    const auto met = overlap(state, probe, pose, 0.0f, {});
+    const auto in = shape_cast(state, probe, pose, -up, {});
+    ASSERT_EQ(met.size() + in.size(), 2u) << i;
+    for (const Vec<3>& point : {met[0].point, in[0].point}) {
+      const Vec<3> own = rotate_back(turn, point);
+      EXPECT_NEAR(own[1], half[1], 2e-5f) << i;
+      EXPECT_LE(std::abs(own[0]), half[0] + 2e-5f) << i;
+      EXPECT_LE(std::abs(own[2]), half[2] + 2e-5f) << i;
+      EXPECT_LE(std::abs(own[0] - aside[0]), wide_half + 2e-5f) << i;
+    }
+    EXPECT_NEAR(met[0].separation, -depth, 3e-5f);
+    const auto fall = shape_cast(state, probe, {pose.position + 4.0f * up, turn}, -5.0f * up, {});
+    ASSERT_EQ(fall.size(), 1u) << i;
+    EXPECT_LE(std::abs(rotate_back(turn, fall[0].point)[0]), half[0] + 2e-5f) << i;
+  }
+}
+
 }  // namespace cycloid::solver

@@ -149,6 +149,29 @@ TEST(Overlap, GivesDepthAndNormalOfAllThatIsNear) {
       2u);
 }
 
+/// Both ends of a face that is parallel tie, and may lie far beside the smaller shape.
+TEST(Overlap, TellsAPointOfTheShapeWhereALargerFaceIsParallel) {
+  for (const float angle : {0.0f, 0.3f, 1.9f})
+    for (const float radius : {0.0f, 0.1f})
+      for (const float aside : {-7.0f, 0.0f, 7.0f}) {
+        World<2> world = make_world<2>();
+        ShapeDef<2> small = box(0.5f, 0.5f);
+        small.radius = radius;
+        add_static(world, {{0, 0}}, small, angle);
+        const Pose<2> pose{rotate(turned(angle), Vec<2>{{aside, 1.4f + radius}}), turned(angle)};
+        const Vec<2> down = rotate(turned(angle), Vec<2>{{0, -1}});
+        const auto met = overlap(world.state(), box_probe(10, 1), pose, 0.0f, {});
+        const auto in = shape_cast(world.state(), box_probe(10, 1), pose, down, {});
+        ASSERT_EQ(met.size() + in.size(), 2u);
+        EXPECT_NEAR(met[0].separation, -0.1f, 4e-6f);
+        for (const Vec<2>& point : {met[0].point, in[0].point}) {
+          const Vec<2> own = rotate_back(turned(angle), point);
+          EXPECT_NEAR(own[1], 0.5f + radius, 4e-6f);
+          EXPECT_LE(std::abs(own[0]), 0.5f + 4e-6f);
+        }
+      }
+}
+
 TEST(ClosestPoint, FromOutsideAndInside) {
   World<2> world = make_world<2>();
   const BodyId left = add_static(world, {{0, 0}}, box(1, 1));
