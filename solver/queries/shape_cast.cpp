@@ -14,34 +14,41 @@ struct Way {
   float radius;  ///< Of both.
 };
 
-template <int D>
-static void offer(const Core<D>& core, float fraction, const Vec<D>& normal, const Vec<D>& point,
-                  Entry<D>& best) {
-  if (!(fraction <= 1.0f) || (best.hit && fraction >= best.fraction)) return;
+/// What a cast has met so far. The first contact counts also where it is not allowed: what comes
+/// after it, the probe meets from within, as when it passes a segment from behind.
+struct FirstMet {
+  Entry<2> best;
+  float first = 2.0f;  ///< The least fraction of all, 2 for none.
+};
+
+static void offer(const Core<2>& core, float fraction, const Vec<2>& normal, const Vec<2>& point,
+                  FirstMet& met) {
+  if (!(fraction <= 1.0f)) return;
+  met.first = min(met.first, fraction);
+  if (met.best.hit && fraction >= met.best.fraction) return;
   if (!allows(core, normal)) return;
-  best = {true, fraction, normal, point};
+  met.best = {true, fraction, normal, point};
 }
 
 /// The discs around the differences of vertices.
-template <int D>
-static void enter_corners(const Core<D>& core, const Core<D>& probe, const Way<D>& way,
-                          Entry<D>& best) {
+static void enter_corners(const Core<2>& core, const Core<2>& probe, const Way<2>& way,
+                          FirstMet& met) {
   if (way.radius <= 0.0f) return;
   for (std::uint32_t i = 0; i < core.count; ++i)
     for (std::uint32_t j = 0; j < probe.count; ++j) {
       // Split along the way, so that a long way to a small ball keeps its digits.
-      const Vec<D> start = probe.vertices[j] - core.vertices[i];
+      const Vec<2> start = probe.vertices[j] - core.vertices[i];
       const float along = dot(start, way.direction);
-      const Vec<D> aside = start - along * way.direction;
+      const Vec<2> aside = start - along * way.direction;
       const float square = way.radius * way.radius - dot(aside, aside);
       if (square <= 0.0f || along >= 0.0f) continue;
       const float half = sqrt(square);
       const float distance = -along - half;
       if (distance < -kTouch) continue;
-      const Vec<D> normal =
+      const Vec<2> normal =
           normalized_or((1.0f / way.radius) * (aside - half * way.direction), -way.direction);
       offer(core, max(distance, 0.0f) / way.length, normal, core.vertices[i] + core.radius * normal,
-            best);
+            met);
     }
 }
 
@@ -61,24 +68,28 @@ static bool enter_face(const Vec<2>& from, const Vec<2>& to, const Vec<2>& norma
   return true;
 }
 
+/// A segment's side that is not free counts too: what passes it has come from behind.
 static void enter_faces(const Core<2>& core, const Core<2>& probe, const Way<2>& way,
-                        Entry<2>& best) {
+                        FirstMet& met) {
   float fraction = 0.0f;
-  for (std::uint32_t i = 0; i < core.faces(); ++i)
+  const std::uint32_t sides = core.one_sided() ? 2 : core.faces();
+  for (std::uint32_t i = 0; i < sides; ++i) {
+    const Vec<2> normal = i < core.faces() ? core.normals[i] : -core.normals[0];
     for (std::uint32_t j = 0; j < probe.count; ++j) {
       const Vec<2> from = core.vertices[i] - probe.vertices[j];
       const Vec<2> to = core.vertices[core.next(i)] - probe.vertices[j];
-      if (!enter_face(from, to, core.normals[i], way, fraction)) continue;
-      offer(core, fraction, core.normals[i],
-            probe.vertices[j] + fraction * way.translation - probe.radius * core.normals[i], best);
+      if (!enter_face(from, to, normal, way, fraction)) continue;
+      offer(core, fraction, normal,
+            probe.vertices[j] + fraction * way.translation - probe.radius * normal, met);
     }
+  }
   for (std::uint32_t j = 0; j < probe.faces(); ++j)
     for (std::uint32_t i = 0; i < core.count; ++i) {
       const Vec<2> from = core.vertices[i] - probe.vertices[j];
       const Vec<2> to = core.vertices[i] - probe.vertices[probe.next(j)];
       const Vec<2> normal = -probe.normals[j];
       if (!enter_face(from, to, normal, way, fraction)) continue;
-      offer(core, fraction, normal, core.vertices[i] + core.radius * normal, best);
+      offer(core, fraction, normal, core.vertices[i] + core.radius * normal, met);
     }
 }
 
@@ -98,15 +109,17 @@ static bool passes(const Core<2>& core, const Core<2>& probe, const Way<2>& way)
 }
 
 static Entry<2> enter_core(const Core<2>& core, const Core<2>& probe, const Vec<2>& translation) {
-  Entry<2> best{};
+  FirstMet met{};
   const float way_length = length(translation);
-  if (way_length <= 1.0e-12f) return best;
+  if (way_length <= 1.0e-12f) return met.best;
   const Way<2> way{translation, (1.0f / way_length) * translation, way_length,
                    core.radius + probe.radius};
-  if (!passes(core, probe, way)) return best;
-  enter_faces(core, probe, way, best);
-  enter_corners(core, probe, way, best);
-  return best;
+  if (!passes(core, probe, way)) return met.best;
+  enter_faces(core, probe, way, met);
+  enter_corners(core, probe, way, met);
+  // Of contacts that only rounding tells apart the one that is allowed counts.
+  if (met.best.fraction > met.first + kTouch / way_length) return Entry<2>{};
+  return met.best;
 }
 
 template <int D>

@@ -205,6 +205,39 @@ static Probe<2> random_probe(std::mt19937& random) {
   return probe;
 }
 
+/// A segment is met where a capsule of the same line is, if that is from its free side.
+TEST(ShapeCast, PassesASegmentFromBehindAndMeetsItAtFirstContactOnly) {
+  std::mt19937 random(1730);
+  int hits = 0;
+  int from_behind = 0;
+  for (int i = 0; i < 3000; ++i) {
+    ShapeDef<2> line = chain({{{-1, 0}}, {{1, 0}}});
+    ShapeDef<2> pill = capsule(1.0f, 0.2f);
+    line.radius = pill.radius;
+    World<2> sided = make_world<2>();
+    World<2> full = make_world<2>();
+    const float angle = uniform(random, -3, 3);
+    add_static(sided, {{0, 0}}, line, angle);
+    add_static(full, {{0, 0}}, pill, angle);
+    const Probe<2> probe = random_probe(random);
+    const Pose<2> pose{{{uniform(random, -3, 3), uniform(random, -3, 3)}},
+                       turned(uniform(random, -3, 3))};
+    const Vec<2> aside = {{uniform(random, -1.5f, 1.5f), uniform(random, -1.5f, 1.5f)}};
+    const Vec<2> way = aside - 2.0f * pose.position;
+    if (!overlap(full.state(), probe, pose, 1e-4f, {}).empty()) continue;
+    const auto first = shape_cast_first(full.state(), probe, pose, way, {});
+    const auto hit = shape_cast_first(sided.state(), probe, pose, way, {});
+    const float rise = first ? dot(first->normal, rotate(turned(angle), Vec<2>{{0, 1}})) : -1.0f;
+    if (std::abs(rise) < 1e-3f) continue;
+    ASSERT_EQ(hit.has_value(), rise > 0) << i;
+    ++(hit ? hits : from_behind);
+    if (!hit) continue;
+    EXPECT_NEAR(hit->fraction, first->fraction, 1e-5f) << i;
+  }
+  EXPECT_GT(hits, 300);
+  EXPECT_GT(from_behind, 300);
+}
+
 TEST(ShapeCast, NeverPassesWhatOverlapFindsOnItsWay) {
   std::mt19937 random(1729);
   int hits = 0;
