@@ -184,9 +184,17 @@ static NearestPoints of_lines(const Core<3>& a, const Core<3>& b) {
   result.on_b = t < 1.0f ? from_b + t * span_b : from_b + span_b;
   const Vec<3> between = result.on_b - result.on_a;
   result.distance = length(between);
+  result.gap = result.distance;
   result.touching = !(result.distance > 1.0e-6f);
   if (!result.touching) result.normal = (1.0f / result.distance) * between;
   return result;
+}
+
+/// How far the lowest corner along a normal keeps the cores apart, from its height times the
+/// distance. Less by no more than rounding counts as the distance.
+static float gap_of(float distance, float height, float scale) {
+  const float gap = height / distance;
+  return gap < distance - 1.0e-6f * scale ? gap : distance;
 }
 
 NearestPoints nearest_points(const Core<3>& a, const Core<3>& b) {
@@ -194,14 +202,16 @@ NearestPoints nearest_points(const Core<3>& a, const Core<3>& b) {
   constexpr int kSteps = 64;
   Simplex simplex = of_point({a.vertices[0] - b.vertices[0], 0, 0});
   float scale = size_of(simplex.nearest);
+  float height = 3.0e38f;
   for (int step = 0; step < kSteps; ++step) {
     const Vec<3> nearest = simplex.nearest;
     const float square = dot(nearest, nearest);
     if (square <= 1.0e-12f * scale * scale) break;
     const DifferenceCorner next = corner_along(a, b, -nearest);
     scale = max(scale, size_of(next.at));
+    height = dot(nearest, next.at);
     // The distance is between dot(nearest, next) / |nearest| and |nearest|.
-    if (square - dot(nearest, next.at) <= 1.0e-7f * sqrt(square) * scale) break;
+    if (square - height <= 1.0e-7f * sqrt(square) * scale) break;
     bool again = false;
     for (std::uint32_t i = 0; i < simplex.count; ++i)
       again = again || (simplex.corners[i].a == next.a && simplex.corners[i].b == next.b);
@@ -214,8 +224,11 @@ NearestPoints nearest_points(const Core<3>& a, const Core<3>& b) {
     }
     if (!nearer(better, simplex)) break;
     simplex = better;
+    height = 3.0e38f;
   }
-  return points_of(a, b, simplex, scale);
+  NearestPoints result = points_of(a, b, simplex, scale);
+  if (!result.touching) result.gap = gap_of(result.distance, height, scale);
+  return result;
 }
 
 }  // namespace cycloid::solver

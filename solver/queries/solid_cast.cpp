@@ -180,23 +180,37 @@ static Entry<3> enter_faces(const Core<3>& core, const Vec<3>& from, const Vec<3
   return entry;
 }
 
+/// Along the normal of the nearest points, or where rounding has turned that, so that the planes
+/// across it do not keep the cores that far apart, along an axis that does better.
+static Separation<3> separation_apart(const Core<3>& core, const Core<3>& moved,
+                                      const NearestPoints& nearest) {
+  Separation<3> result{};
+  result.normal = nearest.normal;
+  result.distance = nearest.gap - (core.radius + moved.radius);
+  if (nearest.gap < nearest.distance) {
+    const Separation<3> axis = separation_across(core, moved);
+    if (axis.distance > result.distance) result = axis;
+  }
+  result.point_a = nearest.on_a + core.radius * result.normal;
+  return result;
+}
+
 /// The separation of cores on a way. After a step cores that touch, or that rounding put a hair
 /// into each other, do so in the plane that the step led to, so `normal` stays.
 static Separation<3> separation_on_way(const Core<3>& core, const Core<3>& moved, bool stepped,
                                        const Vec<3>& normal) {
-  if (!stepped) {
-    Separation<3> start = separation_of_cores(core, moved);
-    start.point_a = surface_point(core, moved, start);
-    return start;
-  }
   const NearestPoints nearest = nearest_points(core, moved);
-  const bool meets = nearest.enclosed || nearest.touching;
+  if (!nearest.enclosed && !nearest.touching) return separation_apart(core, moved, nearest);
   Separation<3> result{};
-  result.normal = meets ? normal : nearest.normal;
-  result.distance = meets ? 0.0f : nearest.distance;
-  result.distance -= core.radius + moved.radius;
+  if (!stepped) {
+    result = separation_across(core, moved);
+    result.point_a = surface_point(core, moved, result);
+    return result;
+  }
+  result.normal = normal;
+  result.distance = -(core.radius + moved.radius);
   const Vec<3> on_core = nearest.enclosed ? touched_point(core, moved, normal, 0.0f) : nearest.on_a;
-  result.point_a = on_core + core.radius * result.normal;
+  result.point_a = on_core + core.radius * normal;
   return result;
 }
 

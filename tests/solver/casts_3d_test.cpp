@@ -162,4 +162,33 @@ TEST(SolidCasts, AndOverlapsTellAPointOnTheShapeMetWhereFacesAreParallel) {
   }
 }
 
+/// Rounding turns the normal of some nearest points by 1e-4, which must not lead past the contact.
+TEST(SolidCasts, OfHullsStopAtTheContactAndNotBehindIt) {
+  std::mt19937 random(43);
+  int hits = 0;
+  for (int i = 0; i < 6000; ++i) {
+    Polyhedra pools;
+    const Vec<3> half = {
+        {uniform(random, 0.05f, 1), uniform(random, 0.05f, 1), uniform(random, 0.05f, 1)}};
+    const Shape<3> shape = solid_hull(random_corners(random, 5, half), pools);
+    Probe<3> probe = block_probe({{half[2], 0.3f * half[0], half[1]}});
+    if (i % 2 == 0) {
+      probe.count = 6;
+      const auto corners = random_corners(random, 6, {{half[1], 0.1f, half[0]}});
+      std::copy(corners.begin(), corners.end(), probe.points.begin());
+    }
+    const Rotation<3> turn = random_rotation(random);
+    const Vec<3> from = 3.0f * normalized_or(random_vector(random, 1), {{1, 0, 0}});
+    const Vec<3> way = random_vector(random, 1) - 1.5f * from;
+    const WorldState<3> state = state_of({{shape, pose_of(Vec<3>::zero())}}, pools);
+    const auto hit = shape_cast_first(state, probe, {from, turn}, way, {});
+    if (!hit) continue;
+    ++hits;
+    const WideCast cast{wide_core(core_of(shape, identity_rotation<3>(), -from, pools)),
+                        wide_core(core_of(probe, turn)), wide(way)};
+    EXPECT_NEAR(cast.apart(hit->fraction), 0, 1.5e-5) << i;
+  }
+  EXPECT_GT(hits, 1000);
+}
+
 }  // namespace cycloid::solver
