@@ -57,7 +57,7 @@ class BinaryReader {
     to.offset = from.offset();
     to.loop = from.loop();
     to.half = triple(from.half());
-    // A file from before boxes has none: not turned, as in scene.hpp. Nor has a body to have one.
+    // Left out by files from before boxes, and of bodies: not turned, as in scene.hpp.
     if (from.rotation() != nullptr) to.rotation = quadruple(from.rotation());
     if (from.triangles() != nullptr && spend(from.triangles()->size() * sizeof(fb::Corners))) {
       to.triangles.reserve(from.triangles()->size());

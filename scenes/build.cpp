@@ -223,7 +223,10 @@ class Builder {
 
   bool is_possible(const Prefab<D>& prefab, const SceneBody& from, const std::string& path) {
     solver::WorldDef<D> def = world_def();
+    // Room for one prefab; but all materials of the scene have to fit.
     def.limits = {};
+    def.limits.materials = limits_.materials;
+    def.limits.shapes = limits_.shapes;
     solver::Result<solver::World<D>> world = solver::World<D>::create(def);
     if (!world.ok()) return false;  // Said already, of the scene's own world.
     const solver::Result<solver::BodyId> id = world.value().create_body(prefab.body, prefab.shapes);
@@ -262,12 +265,16 @@ class Builder {
       add_control(scene_.seats[i].controls[c], at(path + "/controls", c), seat);
   }
 
-  /// The world passes over what acts on a body without an inverse mass.
+  /// The world passes over what acts on a body without an inverse mass, or would turn a particle.
   bool bind_body(const Control& control, const std::string& path, BoundControl& bound) {
     if (!find_body(control.target, path + "/target", bound.body)) return false;
-    if (built_->world.state().bodies[bound.body.index].inverse_mass != 0.0f) return true;
-    complain(path + "/target", "names a body that nothing moves: it has to be dynamic");
-    return false;
+    const solver::Body<D>& body = built_->world.state().bodies[bound.body.index];
+    const bool never_turns = body.kind == solver::BodyKind::kParticle;
+    std::string reason;
+    if (body.inverse_mass == 0.0f) reason = "names a body that nothing moves: it has to be dynamic";
+    if (control.effect == Effect::kTorque && never_turns) reason = "names a particle: none turns";
+    if (!reason.empty()) complain(path + "/target", reason);
+    return reason.empty();
   }
 
   bool bind_joint(const Control& control, const std::string& path, BoundControl& bound) {

@@ -83,7 +83,6 @@ static std::string radius_reason(const SceneShape& shape) {
       return "has to be positive and finite";
     case solver::ShapeKind::kPolygon:
     case solver::ShapeKind::kChain:
-    case solver::ShapeKind::kHalfSpace:
       return "has to be 0 or more and finite";
     default:
       return "has to be left out: " + std::string(name_of(shape.kind)) + " has none";

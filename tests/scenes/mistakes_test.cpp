@@ -94,6 +94,23 @@ TEST(Limits, AreEnoughExactlyWhereTheSceneNeedsNoMore) {
   }
 }
 
+// A prefab is tried out in a world of its own, in which as much has to fit.
+TEST(Limits, OfASceneHoldForItsPrefabsToo) {
+  Scene scene;
+  scene.limits.materials = 300;
+  for (int i = 0; i < 300; ++i) scene.materials.push_back({"m" + std::to_string(i)});
+  SceneBody& prefab = scene.prefabs.emplace_back();
+  prefab.name = "p";
+  prefab.shapes.resize(1);
+  prefab.shapes[0].radius = 1.0f;
+  prefab.shapes[0].material = "m299";
+  std::vector<Mistake> mistakes;
+  const auto made = build<2>(scene, mistakes);
+  EXPECT_EQ(said(mistakes), "");
+  ASSERT_NE(made, nullptr);
+  EXPECT_EQ(made->prefabs.size(), 1u);
+}
+
 struct Sentence {
   const char* json;
   const char* said;

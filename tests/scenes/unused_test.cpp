@@ -166,9 +166,12 @@ TEST(Controls, OfBodiesThatNothingMovesAreRefused) {
   for (const char* effect : {"force", "torque", "impulse"}) {
     EXPECT_EQ(control(R"("kind": "static")", effect), refused);
     EXPECT_EQ(control(R"("kind": "kinematic")", effect), refused);
-    EXPECT_EQ(control(R"("kind": "particle", "mass": 1)", effect), "");
     EXPECT_EQ(control(R"("shapes": [{"radius": 1}])", effect), "");
   }
+  const std::string particle = R"("kind": "particle", "mass": 1)";
+  EXPECT_EQ(control(particle, "force"), "");
+  EXPECT_EQ(control(particle, "torque"),
+            "/seats/0/controls/0/target: names a particle: none turns\n");
 }
 
 }  // namespace cycloid::scenes
