@@ -51,7 +51,7 @@ TEST_F(HttpServerTest, ReadsAsMuchAsIsAnnounced) {
 }
 
 TEST_F(HttpServerTest, ABodyHasADeadlineAsAWhole) {
-  open(300ms);
+  open(1500ms);  // Which the head has to be sent in, too.
   EXPECT_EQ(post("Content-Length: 3", "ab").status, 408);
   asio::io_context io;
   std::vector<asio::ip::tcp::socket> slow;
