@@ -108,11 +108,14 @@ Exit exit_of(const client::JoinReport& report) {
   return report.progress.mismatches == 0 ? kExitGood : kExitDiverged;
 }
 
-/// What went wrong, in a line. A room without a free seat may still have spectators.
+/// What went wrong, in a line. A match whose seats are taken may be watched; by the code alone it
+/// is not told from a room or server that takes nobody more.
 std::string failure_text(const client::JoinReport& report, bool wants_seat) {
   const std::string text = std::string(client::end_name(report.end)) + ": " + report.reason;
   const bool full = report.refused() && report.refused()->code == Refusal::kRoomFull;
-  return full && wants_seat ? text + "; to look on without a seat: --seat spectator" : text;
+  const bool of_seats = report.reason.find(" seats taken, of ") != std::string::npos;
+  if (!full || !of_seats || !wants_seat) return text;
+  return text + "; to look on without a seat: --seat spectator";
 }
 
 Json to_json(const client::JoinReport& report) {
@@ -177,7 +180,7 @@ Exit join(const JoinCommand& command, bool json) {
   options.workers = command.workers;
   options.should_stop = stop_requested;
   if (const std::string mistake = client::mistake_of(options); !mistake.empty())
-    throw Failure(kExitUsage, "--" + mistake);
+    throw Failure(kExitUsage, "--" + mistake);  // The scene has been checked: it is of an option.
   catch_stop_signals();
 
   const client::JoinReport report = client::join(options);

@@ -60,7 +60,7 @@ enum class End : std::uint8_t {
   kStopped,       ///< By `should_stop`.
   kRefused,       ///< By the server; `refused` says why.
   kDisconnected,  ///< No connection, or it broke, or a deadline passed.
-  kFailed,        ///< The server broke the protocol, or `mistake_of` the options is one.
+  kFailed,  ///< The server broke the protocol, the options have a mistake, or the scene cannot run.
 };
 
 const char* end_name(End end);

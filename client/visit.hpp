@@ -18,7 +18,8 @@ namespace cycloid::client {
 /// All callbacks of the options are called from inside of `poll`, on its thread.
 class Visit {
  public:
-  /// The first connection begins. Where `mistake_of` the options is one the visit is over at once.
+  /// The first connection begins. Where the options have a mistake (mistake_of), or the scene
+  /// cannot run, the visit is over at once.
   explicit Visit(JoinOptions options);
   /// Says goodbye where it is connected: at most the farewell deadline of the connection, or as
   /// long as the system's name service takes where a name is being looked up.
@@ -36,7 +37,8 @@ class Visit {
   JoinReport report() const;
   /// What brings the seat back, once; empty where the server gave none.
   const std::vector<std::byte>& resume() const { return resume_; }
-  /// Of the connection there is now, or was last. Null where the options have a mistake.
+  /// Of the connection there is now, or was last. Null where the options have a mistake or the
+  /// scene cannot run.
   Follower* follower();
   const Follower* follower() const;
 

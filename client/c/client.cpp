@@ -70,7 +70,7 @@ std::string mistake_in_c(const cycloid_client_options& options) {
   return "";
 }
 
-/// 0 where it does not fit: that is a mistake of every option that is narrower here than in C.
+/// 0 where it does not fit. What is narrower in C++ than in C must not be 0, so mistake_of says so.
 template <class Narrow>
 Narrow narrow(std::uint32_t wide) {
   return std::in_range<Narrow>(wide) ? static_cast<Narrow>(wide) : Narrow{0};

@@ -108,7 +108,7 @@ class Gate {
   std::vector<GateOverdue> overdue(std::int64_t now_ns);
   /// When `overdue` has something to say next.
   std::optional<std::int64_t> next_deadline_ns() const;
-  /// Whom the gate has admitted no room has taken in, and none will: the token is good once more.
+  /// No room has taken in whom the gate admitted, and none will: the token is good once more.
   void give_back_token(const Admission& admission);
   /// The socket is closed. Unknown ids are ignored.
   void end(GateId id);

@@ -24,7 +24,7 @@ void check_operation_address(const ServerConfig& config, const Complain& complai
   asio::error_code error;
   const auto address = asio::ip::make_address(config.operation.address, error);
   if (error || !address.is_v6() || !config.operation_on || HttpServer::knows_ipv6()) return;
-  complain(key, "it is of IPv6, without which the CivetWeb of this machine was built");
+  complain(key, "it is an IPv6 address, and the CivetWeb of this machine was built without IPv6");
 }
 
 void check_admin(ServerConfig& config, const Complain& complain) {

@@ -21,8 +21,9 @@ RoomFound found_by(protocol::Refusal code) {
 
 /// What a peer is told of a room that is not made. Why a disk or a scene fails is the operator's
 /// business: it may name paths.
-protocol::Refused refusal_of(const ActResult& made) {
-  if (made.status == kNoneMore) return {protocol::Refusal::kRoomFull, made.text};
+protocol::Refused refusal_of(const ActResult& made, bool draining) {
+  if (made.status == kNoneMore)
+    return {draining ? protocol::Refusal::kDraining : protocol::Refusal::kRoomFull, made.text};
   return {protocol::Refusal::kNoSuchRoom, "the server cannot make this room"};
 }
 
@@ -183,7 +184,7 @@ void Host::let_joiners_in(const std::string& name, const ActResult& made) {
   auto waiting = joining_.extract(name);
   if (waiting.empty()) return;
   const auto room = find(name);
-  const protocol::Refused refused = refusal_of(made);
+  const protocol::Refused refused = refusal_of(made, draining_);
   if (room == nullptr && made.text != refused.reason && cannot_lines_.take(1, process_now_ns())) {
     options_.logger->error("room {} cannot be made: {}", name, made.text);
   }

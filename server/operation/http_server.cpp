@@ -22,13 +22,13 @@ class BodyReader {
   BodyReader(mg_connection* connection, std::chrono::milliseconds patience)
       : connection_(connection),
         announced_(mg_get_request_info(connection)->content_length),
-        in_pieces_(mg_get_header(connection, "Transfer-Encoding") != nullptr),
+        in_chunks_(mg_get_header(connection, "Transfer-Encoding") != nullptr),
         patience_(patience),
         deadline_(Clock::now() + patience) {}
 
   HttpBody read() {
-    // Where its pieces end early the library does not say so.
-    if (in_pieces_) return {"", 411, "body: it comes in chunks, and must have a Content-Length"};
+    // Whether chunks were cut off the library does not say.
+    if (in_chunks_) return {"", 411, "body: it comes in chunks, and must have a Content-Length"};
     if (announced_ > kMost) return too_large();
     std::string text;
     int count = 1;
@@ -43,7 +43,7 @@ class BodyReader {
   /// reply.
   void hear_out() {
     char byte = 0;
-    for (long long i = 0; i < 2 * kMost && !in_pieces_ && next(byte) > 0; ++i) {
+    for (long long i = 0; i < 2 * kMost && !in_chunks_ && next(byte) > 0; ++i) {
     }
   }
 
@@ -59,7 +59,7 @@ class BodyReader {
 
   mg_connection* connection_;
   long long announced_;  ///< Below 0 where there is none.
-  bool in_pieces_;
+  bool in_chunks_;
   std::chrono::milliseconds patience_;
   Clock::time_point deadline_;
 };

@@ -14,8 +14,8 @@ namespace cycloid::server {
 
 struct HttpBody {
   std::string text;     ///< "" where it could not be had.
-  int status = 200;     ///< 400, 408, 411 or 413 then, and
-  std::string mistake;  ///< why, as a sentence.
+  int status = 200;     ///< Then 400, 408, 411 or 413.
+  std::string mistake;  ///< Then why, as a sentence.
 };
 
 struct HttpRequest {

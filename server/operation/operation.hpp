@@ -22,8 +22,10 @@ class Operation {
   /// @throws std::system_error where the address cannot be bound.
   static std::unique_ptr<HttpServer> bind(const OperationOptions& options);
 
+  /// Binds by itself: for a host that has no log to begin.
+  Operation(Host& host, OperationOptions options) : Operation(host, options, bind(options)) {}
   /// @param host  Outlives this.
-  /// @param server  As `bind` gives it.
+  /// @param server  What `bind` gave for the same options; not null.
   Operation(Host& host, OperationOptions options, std::unique_ptr<HttpServer> server);
 
   std::uint16_t port() const { return server_->port(); }
