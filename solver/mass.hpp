@@ -48,9 +48,10 @@ template <int D>
 CentralMass<D> central_mass(std::span<const Shape<D>> shapes, std::span<const float> densities,
                             const Polyhedra& hulls);
 
-/// The same, with what the least principal moment lacks to 1e-5 of the greatest added about every
-/// axis. Moments of the world are rounded to 6e-8 of the greatest, in which one a million times
-/// smaller drowns: a wire of two metres and a millimetre then gains energy from every touch.
+/// The same, thickened: what the least principal moment lacks to 1e-5 of the greatest is added
+/// about every axis. Moments of the world are rounded to 6e-8 of the greatest, in which one a
+/// million times smaller drowns: a wire of two metres and a millimetre then gains energy from every
+/// touch.
 inline Inertia<2> thickened(const Inertia<2>& inertia) {
   return inertia;
 }

@@ -109,7 +109,7 @@ static bool invert_pair(ActiveSet<3>& set, const std::array<Vec<3>, 3>& n) {
   return true;
 }
 
-/// In double, which holds the products of floats exactly: three nearly parallel walls may have a
+/// In double, which holds the product of two floats exactly: three nearly parallel walls may have a
 /// corner even where the volume of their normals is less than a float tells from 0.
 static bool invert_triple(ActiveSet<3>& set, const std::array<Vec<3>, 3>& n) {
   constexpr Wide kFlat = 1.0e-13;

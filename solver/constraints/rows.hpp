@@ -95,8 +95,8 @@ struct JointFrame {
 template <int D>
 using RowsFunction = void (*)(const JointFrame<D>& frame, JointRows<D>& rows);
 
-/// Has a joint's function write its rows. Behind this nobody asks whether their counts are in
-/// bounds. @pre rows are cleared.
+/// Has a joint's function write its rows. Counts out of bounds leave none, so that no later stage
+/// has to look. @pre rows are cleared.
 template <int D>
 void write_rows(RowsFunction<D> function, const JointFrame<D>& frame, JointRows<D>& rows) {
   function(frame, rows);

@@ -234,9 +234,9 @@ static void move_substep(float h, const Vec<D>& gravity, const ParticleTuning& t
   }
 }
 
-/// What is held goes wherever its body is put, and what it is linked to follows: farther in a tick
-/// than anything may move by itself. Nothing that is no number becomes one.
-static float held_to(float bound, float speed) {
+/// What is held goes wherever its body is put, and pulls what it is linked to: farther in a tick
+/// than a particle moves by itself. NaN stays NaN, so that the tick faults. `clamp` would hide it.
+static float bounded(float speed, float bound) {
   if (speed > bound) return bound;
   return speed < -bound ? -bound : speed;
 }
@@ -255,7 +255,7 @@ void move_particles(float tick_s, const Vec<D>& gravity, const ParticleTuning& t
   for (std::size_t i = 0; i < particles.size(); ++i) {
     if (particles[i].kind == 0) continue;
     particles[i].position += scratch.motions[i].offset;
-    for (float& speed : particles[i].velocity.v) speed = held_to(kSpeedMax, speed);
+    for (float& speed : particles[i].velocity.v) speed = bounded(speed, kSpeedMax);
   }
 }
 

@@ -12,8 +12,9 @@ struct NearestPoints {
   bool enclosed = false;  ///< The cores overlap; nothing else is set then.
   bool touching = false;  ///< Too near for a direction: within 1e-6 of their size.
   float distance = 0.0f;
-  float gap = 0.0f;  ///< Along the normal: less than the distance where rounding turned that.
-  Vec<3> normal;     ///< Unit, from a to b, unless touching.
+  /// Between the planes across `normal`: less than the distance where rounding has turned that.
+  float gap = 0.0f;
+  Vec<3> normal;  ///< Unit, from a to b, unless touching.
   Vec<3> on_a;
   Vec<3> on_b;
 };

@@ -8,9 +8,9 @@ namespace cycloid::solver {
 ///   b is a rack: C = angle_a + ratio u . x_b - target,  J = (0, 1, ratio u, 0).
 /// Angles count whole turns in a float, so a wheel is held to 0.01 rad at 1e5 rad and to 0.06 at
 /// 1e6, beyond which it slips; and they are counted once a tick, so one that makes more than half a
-/// turn in it (1,800 rpm at 60 Hz) slips by teeth. `target` is the sum at creation. Impulse
-/// N m s, unbounded. Loops of gears whose ratios contradict each other have no solution but rest:
-/// the impulses stay bounded because each row is solved on its own effective mass.
+/// turn in it (1,800 rpm at 60 Hz) is miscounted by whole turns. `target` is the sum at creation.
+/// Impulse N m s, unbounded. Loops of gears whose ratios contradict each other have no solution but
+/// rest: the impulses stay bounded because each row is solved on its own effective mass.
 /// Source: the gear joint of Box2D's manual; Catto, GDC 2009, for the rows.
 template <>
 void gear_rows(const JointFrame<2>& frame, JointRows<2>& rows) {
