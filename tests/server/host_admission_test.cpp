@@ -55,12 +55,7 @@ class HostAdmission : public testing::Test {
     EXPECT_TRUE(peer->wait_for<protocol::Welcome>());
     return peer;
   }
-  std::string close() {
-    server_->stop();
-    (void)server_->report();
-    server_.reset();
-    return lines_.text();
-  }
+  std::string close() { return last_words(server_, lines_); }
 
   HostLines lines_;
   std::optional<RunningHost> server_;

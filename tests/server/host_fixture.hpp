@@ -166,4 +166,12 @@ class RunningHost {
   std::future<HostReport> report_;
 };
 
+/// Ends the host. @returns all that it has said.
+inline std::string last_words(std::optional<RunningHost>& server, const HostLines& lines) {
+  server->stop();
+  (void)server->report();
+  server.reset();
+  return lines.text();
+}
+
 }  // namespace cycloid::server

@@ -28,6 +28,14 @@ std::size_t open_descriptors() {
   return count;
 }
 
+/// Where a log of a test goes; nothing is there yet.
+std::string fresh_log(const std::string& word) {
+  std::string path =
+      testing::TempDir() + "cycloid-" + word + "-" + std::to_string(::getpid()) + ".log";
+  std::filesystem::remove(path);
+  return path;
+}
+
 std::size_t resident_bytes() {
   std::ifstream stream("/proc/self/statm");
   std::size_t pages = 0;
@@ -152,10 +160,8 @@ TEST(Host, ADrainTellsClientsAndEndsRoomsAtItsDeadline) {
   HostOptions options = quiet_host(lines);
   options.rooms.push_back({"arena", two_seat_settings()});
   options.rooms.push_back({"empty", two_seat_settings()});
-  options.rooms[0].settings.log =
-      testing::TempDir() + "cycloid-drain-" + std::to_string(::getpid()) + ".log";
-  const std::string log = options.rooms[0].settings.log;
-  std::filesystem::remove(log);
+  const std::string log = fresh_log("drain");
+  options.rooms[0].settings.log = log;
   RunningHost server(std::move(options));
   HostPeer peer(server.port());
   peer.greet("arena");
@@ -289,9 +295,7 @@ TEST(Host, IdleConnectionsCostLittleAndHarmNobody) {
 
 TEST(Host, ADiskThatHangsIsSeenAsARoomThatIsStuck) {
   HostLines lines;
-  const std::string log =
-      testing::TempDir() + "cycloid-stuck-" + std::to_string(::getpid()) + ".log";
-  std::filesystem::remove(log);
+  const std::string log = fresh_log("stuck");
   std::atomic<bool> hangs{false};
   HostOptions options = waiting_host(lines, log, hangs);
   options.rooms.push_back({"other", two_seat_settings()});
@@ -313,9 +317,7 @@ TEST(Host, ADiskThatHangsIsSeenAsARoomThatIsStuck) {
 
 TEST(Host, TicksThatAreCaughtUpCountAsLateToo) {
   HostLines lines;
-  const std::string log =
-      testing::TempDir() + "cycloid-late-" + std::to_string(::getpid()) + ".log";
-  std::filesystem::remove(log);
+  const std::string log = fresh_log("late");
   std::atomic<bool> hangs{false};
   HostOptions options = waiting_host(lines, log, hangs);
   options.limits.room.catch_up_ticks_max = 100'000;  // However late a busy machine lets it be.

@@ -55,10 +55,7 @@ class OperationTest : public testing::Test {
   }
   std::string close() {
     operation_.reset();
-    server_->stop();
-    (void)server_->report();
-    server_.reset();
-    return lines_.text();
+    return last_words(server_, lines_);
   }
 
   HostLines lines_;
