@@ -180,7 +180,7 @@ Exit join(const JoinCommand& command, bool json) {
   options.workers = command.workers;
   options.should_stop = stop_requested;
   if (const std::string mistake = client::mistake_of(options); !mistake.empty())
-    throw Failure(kExitUsage, "--" + mistake);  // The scene has been checked: it is of an option.
+    throw Failure(kExitUsage, "--" + mistake);
   catch_stop_signals();
 
   const client::JoinReport report = client::join(options);

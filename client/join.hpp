@@ -50,8 +50,8 @@ struct JoinOptions {
   std::function<void(const protocol::RoomNotice&)> on_notice;
 };
 
-/// What is wrong with the options, the first mistake alone: the option and why, or "" where they
-/// can be joined with. Asks neither the server nor the name service.
+/// What is wrong with the options, the first mistake alone: the option and why, or "". Asks neither
+/// the server nor the name service, and does not build the scene: that a visit does.
 std::string mistake_of(const JoinOptions& options);
 
 enum class End : std::uint8_t {

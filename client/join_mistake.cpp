@@ -39,11 +39,8 @@ std::string mistake_of_stay(const JoinOptions& options) {
 }  // namespace
 
 std::string mistake_of(const JoinOptions& options) {
-  if (std::string mistake = mistake_of_way(options); !mistake.empty()) return mistake;
-  if (std::string mistake = mistake_of_stay(options); !mistake.empty()) return mistake;
-  const std::vector<scenes::Mistake> mistakes = scenes::check(options.scene);
-  if (mistakes.empty()) return "";
-  return "the scene cannot run: " + mistakes.front().path + ": " + mistakes.front().reason;
+  std::string mistake = mistake_of_way(options);
+  return mistake.empty() ? mistake_of_stay(options) : mistake;
 }
 
 }  // namespace cycloid::client

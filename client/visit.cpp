@@ -14,6 +14,13 @@ std::uint64_t steady_ns() {
   return static_cast<std::uint64_t>(std::chrono::nanoseconds(now).count());
 }
 
+/// Why a scene cannot run: its own first mistake, if it has one.
+std::string scene_reason(const scenes::Scene& scene, const solver::Error& error) {
+  const std::vector<scenes::Mistake> mistakes = scenes::check(scene);
+  return "the scene cannot run: " +
+         (mistakes.empty() ? error.field : mistakes.front().path + ": " + mistakes.front().reason);
+}
+
 /// What may be otherwise in a moment: the old connection of our own seat may still hold it.
 bool may_pass(protocol::Refusal code) {
   switch (code) {
@@ -78,7 +85,7 @@ void Visit::begin(std::chrono::milliseconds wait) {
   auto simulation = scenes::Simulation::create(options_.scene);
   solver::Error error = simulation.ok() ? solver::Error{} : simulation.error();
   if (error.ok()) error = simulation.value().set_workers_at_most(options_.workers, &steady_ns);
-  if (!error.ok()) return fail(std::string("the scene cannot run: ") + error.field);
+  if (!error.ok()) return fail(scene_reason(options_.scene, error));
   options_.resume = resume_;
   options_.room = room_;
   if (has_kept_) simulation.value().restore(kept_);

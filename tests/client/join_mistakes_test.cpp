@@ -56,9 +56,11 @@ TEST(JoinMistakes, EndAVisitAtOnceAndAreNamed) {
 TEST(JoinMistakes, OfASceneSayWhere) {
   JoinOptions options = good_options();
   options.scene.bodies.at(1).position[1] = 1.0e9f;
-  const std::string mistake = mistake_of(options);
-  EXPECT_TRUE(mistake.starts_with("the scene cannot run: /bodies/1/position: ")) << mistake;
-  EXPECT_EQ(Visit(options).report().reason, mistake);
+  const Visit visit(options);
+  const std::string reason = visit.report().reason;
+  EXPECT_TRUE(visit.over());
+  EXPECT_EQ(visit.report().end, End::kFailed);
+  EXPECT_TRUE(reason.starts_with("the scene cannot run: /bodies/1/position: ")) << reason;
 }
 
 }  // namespace
