@@ -31,6 +31,17 @@ LogCursor begin_at(const LoadedLog& loaded, std::uint64_t from, scenes::Simulati
   return cursor;
 }
 
+/// @returns how a keyframe is not what the replay has made, or nothing.
+std::optional<Divergence> compare_keyframe(const protocol::LogKeyframe& keyframe,
+                                           const scenes::Simulation& simulation) {
+  const std::uint64_t digest = simulation.digest();
+  if (keyframe.digest != digest) return Divergence{keyframe.tick, keyframe.digest, digest};
+  std::vector<std::byte> state;
+  simulation.encode(state);
+  if (state == keyframe.state) return {};
+  return Divergence{keyframe.tick, keyframe.digest, digest, "", true};
+}
+
 /// Steps once, and writes down the digest. @returns what differs, or nothing.
 std::optional<Divergence> step_by(const protocol::LogTick& tick, scenes::Simulation& simulation,
                                   std::vector<scenes::SeatInput>& inputs, std::uint64_t& digest) {
@@ -58,18 +69,15 @@ Replayed replay(const LoadedLog& loaded, const ReplayOptions& options,
   result.digest = simulation.digest();
   const std::uint64_t to = options.to.value_or(loaded.last_tick());
   std::vector<scenes::SeatInput> inputs;
-  std::vector<std::byte> state;
   for (LogStep step = cursor.next(); step != LogStep::kEnd; step = cursor.next()) {
     if (step == LogStep::kKeyframe) {
-      state.clear();
-      simulation.encode(state);
-      const protocol::LogKeyframe& keyframe = cursor.keyframe();
-      if (state != keyframe.state) {
-        result.divergence = {keyframe.tick, keyframe.digest, result.digest, "", true};
-        return result;
-      }
+      result.divergence = compare_keyframe(cursor.keyframe(), simulation);
+      if (result.divergence) return result;
       ++result.keyframes;
     }
+    // Of a log without ticks, nothing else says what its state was.
+    if (step == LogStep::kFooter && cursor.footer().digest != result.digest)
+      result.divergence = {cursor.last_tick(), cursor.footer().digest, result.digest};
     if (step != LogStep::kTick) continue;
     if (cursor.tick().frame.tick > to) break;
     result.divergence = step_by(cursor.tick(), simulation, inputs, result.digest);

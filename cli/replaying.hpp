@@ -18,8 +18,8 @@ struct Divergence {
   std::uint64_t tick = 0;
   std::uint64_t recorded = 0;
   std::uint64_t replayed = 0;
-  std::string fault;      ///< Where the replay could not make the tick at all.
-  bool keyframe = false;  ///< The digests are equal, and the state in the log is another.
+  std::string fault = "";  ///< Where the replay could not make the tick at all.
+  bool keyframe = false;   ///< The digests are equal, and the state in the log is another.
 };
 
 struct Replayed {
@@ -42,8 +42,8 @@ struct ReplayOptions {
   std::function<void(std::uint64_t tick, std::uint64_t digest)> on_tick;
 };
 
-/// Steps the scene by the frames and compares the digest of every tick, and the state of every
-/// keyframe byte by byte; stops at the first that differs.
+/// Steps the scene by the frames and compares the digest of every tick, keyframe and footer, and
+/// the state of every keyframe byte by byte; stops at the first that differs.
 Replayed replay(const LoadedLog& loaded, const ReplayOptions& options);
 /// The same in up to `jobs` threads, each with a part between two of the log's keyframes: from the
 /// state of the first, to that of the second. So that the log is good if all parts are: the replay

@@ -103,17 +103,22 @@ LogCursor::Step LogCursor::take_tick(std::span<const std::byte> payload) {
     return end(LogState::kCorrupt, "a tick with values out of range" + at_byte(record_at_));
   tick_.frame.tick = ++last_tick_;
   last_digest_ = tick_.digest;
+  stands_on_keyframe_ = false;
   return Step::kTick;
 }
 
 LogCursor::Step LogCursor::take_keyframe(std::span<const std::byte> payload) {
   auto keyframe = read_keyframe(payload);
+  if (keyframe && stands_on_keyframe_ && keyframe->tick == last_tick_)
+    return end(LogState::kCorrupt,
+               "a second keyframe of tick " + std::to_string(last_tick_) + at_byte(record_at_));
   const bool first = !last_digest_;
   const bool fits =
       keyframe && keyframe->tick == last_tick_ &&
       (first || (keyframe->digest == *last_digest_ && keyframe->seats == tick_.frame.seats));
   if (!fits) return end(LogState::kCorrupt, "a keyframe of another match" + at_byte(record_at_));
   keyframe_ = std::move(*keyframe);
+  stands_on_keyframe_ = true;
   last_digest_ = keyframe_.digest;
   tick_.frame.seats = keyframe_.seats;
   return Step::kKeyframe;

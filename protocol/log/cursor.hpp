@@ -73,6 +73,7 @@ class LogCursor {
   std::uint64_t record_at_ = 0;
   std::uint32_t record_before_ = 0;
   std::uint64_t good_bytes_ = 0;
+  bool stands_on_keyframe_ = false;  ///< That of the last tick was read.
   bool footed_ = false;
   bool ended_ = false;
   LogState state_ = LogState::kOpen;

@@ -50,6 +50,7 @@ static LogSummary scan(std::span<const std::byte> bytes,
     summary.state = LogState::kCorrupt;
     summary.reason = "a footer whose index is not that of the keyframes";
   }
+  if (summary.footer) summary.last_digest = summary.footer->digest;
   return summary;
 }
 

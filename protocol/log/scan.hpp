@@ -17,7 +17,7 @@ struct LogSummary {
   LogHeader header;
   LogStart start;
   std::uint64_t last_tick = 0;    ///< Of the good prefix; branch_tick where it has no tick.
-  std::uint64_t last_digest = 0;  ///< After it; 0 where there is neither tick nor keyframe.
+  std::uint64_t last_digest = 0;  ///< After it; 0 where no record says one.
   std::vector<KeyframePlace> keyframes;
   std::uint64_t keyframe_bytes = 0;
   std::optional<LogFooter> footer;

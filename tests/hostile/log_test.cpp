@@ -90,6 +90,35 @@ TEST(HostileKeyframe, FlipsWithChecksRemadeAreNeverGood) {
   print(found);
 }
 
+/// What the log of a match that has not begun says of its state.
+struct Beginning {
+  std::uint64_t keyframe_digest = 0;
+  std::uint64_t footer_digest = 0;
+  bool with_keyframe = false;
+};
+
+protocol::Bytes log_of(const scenes::Scene& scene, const Beginning& beginning) {
+  protocol::Bytes bytes;
+  protocol::LogEncoder encoder(protocol::log_header_of(scene), bytes);
+  if (beginning.with_keyframe) {
+    protocol::Bytes state;
+    scenes::Simulation::create(scene).value().encode(state);
+    encoder.keyframe(beginning.keyframe_digest, state, bytes);
+  }
+  encoder.footer({0, beginning.footer_digest, {}}, bytes);
+  return bytes;
+}
+
+/// No tick's digest stands beside these: they are held against the state itself.
+TEST(HostileBeginning, ADigestThatIsNotOfTheFirstStateDiverges) {
+  const scenes::Scene scene = catalogue_scene("vehicle");
+  const std::uint64_t digest = scenes::Simulation::create(scene).value().digest();
+  EXPECT_EQ(verified(log_of(scene, {0, digest, false})).verdict, "good");
+  EXPECT_EQ(verified(log_of(scene, {0, digest ^ 1, false})).verdict, "diverged");
+  EXPECT_EQ(verified(log_of(scene, {digest, digest, true})).verdict, "good");
+  EXPECT_EQ(verified(log_of(scene, {digest ^ 1, digest ^ 1, true})).verdict, "diverged");
+}
+
 TEST_F(HostileLog, AsItIsItIsGood) {
   const Finding finding = verified(bytes);
   EXPECT_EQ(finding.verdict, "good") << finding.why;

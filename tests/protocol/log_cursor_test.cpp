@@ -134,6 +134,30 @@ TEST(LogCursor, AKeyframeThatIsNotOfItsTickIsCorruption) {
   EXPECT_EQ(read_log(bytes).last_tick, 1u);
 }
 
+/// A reader begins at one of them, and would never look at the other.
+TEST(LogCursor, TwoKeyframesOfOneTickAreCorruption) {
+  const LogKeyframe keyframe{41, 4711, samples::log_tick(41).frame.seats, Bytes(20, std::byte{1})};
+  LogHeader header = samples::log_header();
+  header.branch_tick = keyframe.tick;
+  Bytes bytes;
+  LogEncoder encoder(header, bytes);
+  encoder.first_keyframe(keyframe, bytes);
+  const std::string at = std::to_string(bytes.size());
+  encoder.first_keyframe(keyframe, bytes);
+  const LogSummary log = scan_log(bytes);
+  EXPECT_EQ(log.state, LogState::kCorrupt);
+  EXPECT_EQ(log.reason, "a second keyframe of tick 41 at byte " + at);
+  EXPECT_EQ(log.keyframes.size(), 1u);
+}
+
+TEST(LogCursor, TheDigestOfALogWithoutTicksIsThatOfItsFooter) {
+  Bytes bytes;
+  LogEncoder(samples::log_header(), bytes).footer({0, 4711, {}}, bytes);
+  const LogSummary log = scan_log(bytes);
+  EXPECT_EQ(log.state, LogState::kComplete) << log.reason;
+  EXPECT_EQ(log.last_digest, 4711u);
+}
+
 /// Whatever a room can put into a frame: seats come and go, events of every kind, changes, and
 /// every field from any value to any other.
 TEST(LogCursor, AnyFrameComesBack) {
