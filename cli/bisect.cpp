@@ -15,7 +15,7 @@ struct BisectOptions {
   std::string b;
   std::string against;
   std::string runner;
-  std::uint64_t ticks = 600;
+  std::optional<std::uint64_t> ticks;
   std::size_t fields = 8;
   LoadOptions loading;
 };
@@ -106,9 +106,7 @@ Finding bisect_builds(const BisectOptions& options) {
   Finding finding;
   const auto here = suspect_here("this program", match);
   const auto there = suspect_there({options.against, options.runner}, match, options.loading);
-  const std::uint64_t wanted = match.begin() + options.ticks;
-  const std::uint64_t ticks = std::min(match.ticks(wanted), wanted);
-  bisect_worlds(*here, *there, ticks, options.fields, finding);
+  bisect_worlds(*here, *there, match.stepped_to(options.ticks), options.fields, finding);
   if (!finding.blame || !match.log || finding.blame->tick == match.begin()) return finding;
   const std::string recorded = hex16(match.recorded_digest(finding.blame->tick));
   const std::string by = recorded == finding.blame->digest_a   ? finding.name_a
@@ -161,7 +159,8 @@ void add_bisect(CLI::App& app, Action& action) {
       "--against", options->against, "The cycloid of another build, to step the same match");
   command->add_option("--runner", options->runner, "What starts it: 'qemu-aarch64'")
       ->needs(against);
-  command->add_option("--ticks", options->ticks, "With --against: how far")->capture_default_str();
+  command->add_option("--ticks", options->ticks,
+                      "With --against: how many [all of a log, 600 of a scene]");
   command->add_option("--fields", options->fields, "How many differing fields to name at most")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

@@ -16,7 +16,7 @@ namespace {
 struct DiffOptions {
   std::string a;
   std::string b;
-  std::uint64_t ticks = 600;
+  std::uint64_t ticks = kScriptTicks;
   std::size_t fields = 8;
   LoadOptions loading;
 };

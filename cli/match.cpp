@@ -1,12 +1,20 @@
 #include "cli/match.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <utility>
 
 #include "cli/files.hpp"
 #include "cli/output.hpp"
 
 namespace cycloid::cli {
+
+std::uint64_t Match::stepped_to(std::optional<std::uint64_t> count) const {
+  if (log && !count) return log->last_tick();
+  const std::uint64_t count_max = std::numeric_limits<std::uint64_t>::max() - begin();
+  const std::uint64_t wanted = begin() + std::min(count.value_or(kScriptTicks), count_max);
+  return std::min(ticks(wanted), wanted);
+}
 
 std::vector<scenes::SeatInput> Match::inputs(std::uint64_t tick, int seats) const {
   std::vector<scenes::SeatInput> inputs;

@@ -11,6 +11,9 @@
 
 namespace cycloid::cli {
 
+/// How far a scene by its script is stepped where nobody says.
+inline constexpr std::uint64_t kScriptTicks = 600;
+
 /// How a match is stepped; changes no bit.
 struct StepSetting {
   int workers = 1;
@@ -28,6 +31,9 @@ struct Match {
   std::uint64_t begin() const { return log ? log->first_tick() - 1 : 0; }
   /// Its last tick; a scene by its script has no end.
   std::uint64_t ticks(std::uint64_t otherwise) const { return log ? log->last_tick() : otherwise; }
+  /// The tick `count` ticks after the beginning, or the last of a log that has none; where no
+  /// number is given, the last of a log, and of a scene by its script kScriptTicks.
+  std::uint64_t stepped_to(std::optional<std::uint64_t> count) const;
   /// Those of the log's frame, or what the script says for so many seats. Not for two threads.
   /// @pre begin() < tick <= ticks(tick)
   std::vector<scenes::SeatInput> inputs(std::uint64_t tick, int seats) const;

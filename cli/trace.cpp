@@ -2,6 +2,7 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "cli/commands.hpp"
 #include "cli/trace_text.hpp"
@@ -12,7 +13,7 @@ namespace {
 struct TraceCommand {
   std::string match;
   std::uint64_t tick = 0;
-  std::uint64_t ticks = 600;
+  std::optional<std::uint64_t> ticks;
   TraceDetail detail;
   std::string phase;
   StepSetting setting;
@@ -21,9 +22,7 @@ struct TraceCommand {
 
 Exit print_course(const TraceCommand& options, bool json) {
   const Match match = open_match(options.match, options.loading);
-  const std::uint64_t wanted = match.begin() + options.ticks;
-  const std::uint64_t ticks = std::min(match.ticks(wanted), wanted);
-  const Course course = run_course(match, ticks, options.setting);
+  const Course course = run_course(match, match.stepped_to(options.ticks), options.setting);
   const Exit exit = course.fault.empty() ? kExitGood : kExitDiverged;
   Json digests = Json::array();
   for (std::uint64_t tick = course.begin; tick <= course.last_tick(); ++tick) {
@@ -86,7 +85,8 @@ void add_trace(CLI::App& app, Action& action) {
   CLI::Option* tick =
       command->add_option("--tick", options->tick, "The tick to look into; 0: the start");
   add_salvage_option(command, options->loading);
-  command->add_option("--ticks", options->ticks, "Without --tick: how far")->capture_default_str();
+  command->add_option("--ticks", options->ticks,
+                      "Without --tick: how many [all of a log, 600 of a scene]");
   command->add_flag("--objects", options->detail.objects, "Also the digest of every object")
       ->needs(tick);
   command->add_option("--object", options->detail.object, "And the fields of one: 'contact 7'")

@@ -1,6 +1,8 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "tests/cli/logs.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/places.hpp"
@@ -78,6 +80,34 @@ TEST(Bisect, OfABuildAgainstItselfIsEqual) {
       run_program({"bisect", "card-house", "--against", places::program(), "--ticks", "30"});
   EXPECT_EQ(ran.exit, 0) << ran.err;
   EXPECT_EQ(ran.out, "equal for 30 ticks\n");
+}
+
+/// A log is longer than what a scene is stepped to, and all of it is asked about.
+TEST(Bisect, OfALogGoesToItsEnd) {
+  const Folder folder;
+  const std::string log = folder.file("long.cylog");
+  run_program({"run", "half-pipe", "--ticks", "620", "--log", log});
+  const std::vector<std::string> command = {"bisect", log, "--against", places::program()};
+  EXPECT_EQ(run_program(command).out, "equal for 620 ticks\n");
+  std::vector<std::string> with_ticks = command;
+  with_ticks.insert(with_ticks.end(), {"--ticks", "18446744073709551615"});
+  EXPECT_EQ(run_program(with_ticks).out, "equal for 620 ticks\n");
+  with_ticks.back() = "5";
+  EXPECT_EQ(run_program(with_ticks).out, "equal for 5 ticks\n");
+  const std::string trace = run_program({"trace", log}).out;
+  EXPECT_EQ(std::ranges::count(trace, '\n'), 621);
+}
+
+/// So many ticks after its beginning are more than there are numbers.
+TEST(Bisect, OfACutGoesNoFurtherThanItsEndWhateverIsAskedFor) {
+  const Folder folder;
+  const std::string log = folder.file("match.cylog");
+  const std::string cut = folder.file("cut.cylog");
+  run_program({"run", "half-pipe", "--ticks", "9", "--log", log});
+  ASSERT_EQ(run_program({"cut", log, "--from", "5", "-o", cut}).exit, 0);
+  const Ran ran = run_program(
+      {"bisect", cut, "--against", places::program(), "--ticks", "18446744073709551615"});
+  EXPECT_EQ(ran.out, "equal for 4 ticks\n") << ran.err;
 }
 
 TEST(Bisect, RunsTheOtherBuildByItsRunner) {
