@@ -28,6 +28,7 @@ struct Finding {
   std::string input_text;
   std::optional<Blame> blame;
   std::vector<std::string> notes;  ///< What else is not the same, in sentences.
+  Exit exit = kExitGood;           ///< Of the logs, where all is the same.
 
   bool any() const { return input_tick || blame || !notes.empty(); }
 };
@@ -87,6 +88,7 @@ Finding bisect_logs(const BisectOptions& options) {
                                   ": cut both from one tick");
   }
   Finding finding;
+  finding.exit = std::max(a.exit(), b.exit());
   const std::uint64_t ticks_a = a.ticks(0);
   const std::uint64_t ticks_b = b.ticks(0);
   const std::uint64_t ticks = std::min(ticks_a, ticks_b);
@@ -104,8 +106,9 @@ Finding bisect_logs(const BisectOptions& options) {
 Finding bisect_builds(const BisectOptions& options) {
   const Match match = open_match(options.a, options.loading);
   Finding finding;
+  finding.exit = match.exit();
   const auto here = suspect_here("this program", match);
-  const auto there = suspect_there({options.against, options.runner}, match, options.loading);
+  const auto there = suspect_there({options.against, options.runner}, match);
   bisect_worlds(*here, *there, match.stepped_to(options.ticks), options.fields, finding);
   if (!finding.blame || !match.log || finding.blame->tick == match.begin()) return finding;
   const std::string recorded = hex16(match.recorded_digest(finding.blame->tick));
@@ -139,7 +142,7 @@ Exit bisect(const BisectOptions& options, bool json) {
   if (options.b.empty() == options.against.empty())
     throw Failure(kExitUsage, "bisect: takes two logs, or one match and --against PROGRAM");
   const Finding finding = options.b.empty() ? bisect_builds(options) : bisect_logs(options);
-  const Exit exit = finding.any() ? kExitDiverged : kExitGood;
+  const Exit exit = finding.any() ? kExitDiverged : finding.exit;
   if (json) print_json(json_of(finding), exit);
   if (!json) print_text(finding);
   return exit;

@@ -29,10 +29,9 @@ struct OtherBuild {
   std::string runner;  ///< What starts it: "qemu-aarch64 -L /usr/aarch64-linux-gnu"; "": nothing.
 };
 
-/// A match, opened here as `loading` says, as another build steps it. Its calls throw a Failure
-/// with kExitIo and the last words of the program where it does not do what it should.
-std::unique_ptr<Suspect> suspect_there(const OtherBuild& build, const Match& match,
-                                       const LoadOptions& loading);
+/// A match as another build steps it: of a log, what is good here. Its calls throw a Failure with
+/// kExitIo and the last words of the program where it does not do what it should.
+std::unique_ptr<Suspect> suspect_there(const OtherBuild& build, const Match& match);
 
 /// Where in a tick two worlds part.
 struct Blame {

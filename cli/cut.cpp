@@ -102,8 +102,7 @@ Exit cut_log(const CutOptions& options, bool json) {
   encoder.footer({bounds.to, digest, {}}, bytes);
   write();
   file.finish();
-  if (const std::string blemish = loaded.blemish(); !blemish.empty())
-    std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
+  print_blemish(loaded);
   const Exit exit = loaded.exit();
   if (json)
     print_json({{"log", options.out}, {"from", bounds.from}, {"to", bounds.to}}, exit);

@@ -158,7 +158,7 @@ Exit diff(const DiffOptions& options, bool json) {
   Side a = open_side(options.a, options.loading);
   Side b = open_side(options.b, options.loading);
   const Found found = compare(a, b, options);
-  const Exit exit = found.any() ? kExitDiverged : kExitGood;
+  const Exit exit = found.any() ? kExitDiverged : std::max(a.match.exit(), b.match.exit());
   if (json) print_json(to_json(found), exit);
   if (!json) print_text(found);
   return exit;

@@ -76,8 +76,7 @@ Exit export_log(const ExportOptions& options) {
   std::ostream& out = file ? file->stream() : std::cout;
   options.format == "csv" ? write_csv(loaded, out) : write_json(loaded, out);
   if (file) file->finish();
-  const std::string blemish = loaded.blemish();
-  if (!blemish.empty()) std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
+  print_blemish(loaded);
   return loaded.exit();
 }
 

@@ -1,5 +1,6 @@
 #include "cli/log_file.hpp"
 
+#include <iostream>
 #include <utility>
 
 #include "cli/output.hpp"
@@ -59,6 +60,11 @@ LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes,
   return {file, std::move(log),
           std::make_shared<const std::vector<std::byte>>(good.begin(), good.end()),
           std::move(*loaded.scene), salvaged};
+}
+
+void print_blemish(const LoadedLog& loaded) {
+  const std::string blemish = loaded.blemish();
+  if (!blemish.empty()) std::cerr << "cycloid: " << loaded.file << ": " << blemish << '\n';
 }
 
 TickReader::TickReader(const LoadedLog& loaded)

@@ -41,6 +41,9 @@ LoadedLog load_log(const std::string& file, const LoadOptions& options = {});
 LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes,
                     const LoadOptions& options = {});
 
+/// Says on stderr how a log does not end as it should, and what is lost; nothing of one that does.
+void print_blemish(const LoadedLog& loaded);
+
 /// The ticks of a log in any order; quick where each is the one after the last.
 class TickReader {
  public:

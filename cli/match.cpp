@@ -46,6 +46,7 @@ static bool is_log(const std::string& what) {
 Match open_match(const std::string& what, const LoadOptions& options) {
   if (!is_log(what)) return {what, {}, load_scene(what), nullptr};
   LoadedLog log = load_log(what, options);
+  print_blemish(log);
   auto reader = std::make_shared<TickReader>(log);
   scenes::Scene scene = log.scene;
   return {what, std::move(log), std::move(scene), std::move(reader)};

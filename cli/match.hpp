@@ -39,13 +39,16 @@ struct Match {
   std::vector<scenes::SeatInput> inputs(std::uint64_t tick, int seats) const;
   /// The digest in the log. @pre there is a log, and begin() < tick <= ticks(tick)
   std::uint64_t recorded_digest(std::uint64_t tick) const;
+  /// Of a command that has found nothing else: that of the log.
+  Exit exit() const { return log ? log->exit() : kExitGood; }
   /// The world as it was made, or as the log goes on from.
   scenes::Simulation start(const StepSetting& setting) const;
 
   std::shared_ptr<TickReader> reader;  ///< Of the log.
 };
 
-/// A log, a scene file or a catalogue name; a Failure says what is wrong with it.
+/// A log, a scene file or a catalogue name; a Failure says what is wrong with it. Of a log that has
+/// lost its end that is said on stderr: see `exit`.
 Match open_match(const std::string& what, const LoadOptions& options = {});
 
 /// The first difference of two ticks' inputs as "seat 1: axes[0]: 100 (0x0064) against -3

@@ -31,8 +31,7 @@ void check_bounds(const ReplayCommand& options, const LoadedLog& loaded) {
 }
 
 void print_words(const ReplayCommand& options, const LoadedLog& loaded, const Replayed& replayed) {
-  const std::string blemish = loaded.blemish();
-  if (!blemish.empty()) std::cerr << "cycloid: " << options.log << ": " << blemish << '\n';
+  print_blemish(loaded);
   if (replayed.divergence) {
     std::cerr << "cycloid: " << options.log << ": " << divergence_text(*replayed.divergence)
               << '\n';

@@ -47,14 +47,15 @@ std::optional<Course> course_from_lines(const std::string& lines) {
 
 class SuspectThere : public Suspect {
  public:
-  SuspectThere(const OtherBuild& build, const Match& match, const LoadOptions& loading)
+  SuspectThere(const OtherBuild& build, const Match& match)
       : program_(build.program), match_(match.name), begin_(match.begin()) {
     std::istringstream words(build.runner);
     for (std::string word; words >> word;) command_.push_back(word);
     const bool beside = program_.find('/') == std::string::npos && kind_of(program_).is_file;
     command_.push_back(beside ? "./" + program_ : program_);  // Not one of that name in PATH.
     command_.insert(command_.end(), {"trace", match_});
-    if (match.log && loading.salvage) command_.push_back("--salvage");
+    const bool whole = !match.log || (match.exit() == kExitGood && !match.log->salvaged);
+    if (!whole) command_.push_back("--salvage");  // As far as it goes here, with nothing to say.
   }
   std::string name() const override { return program_; }
 
@@ -109,9 +110,8 @@ std::unique_ptr<Suspect> suspect_here(std::string name, const Match& match) {
   return std::make_unique<SuspectHere>(std::move(name), match);
 }
 
-std::unique_ptr<Suspect> suspect_there(const OtherBuild& build, const Match& match,
-                                       const LoadOptions& loading) {
-  return std::make_unique<SuspectThere>(build, match, loading);
+std::unique_ptr<Suspect> suspect_there(const OtherBuild& build, const Match& match) {
+  return std::make_unique<SuspectThere>(build, match);
 }
 
 }  // namespace cycloid::cli

@@ -23,7 +23,7 @@ struct TraceCommand {
 Exit print_course(const TraceCommand& options, bool json) {
   const Match match = open_match(options.match, options.loading);
   const Course course = run_course(match, match.stepped_to(options.ticks), options.setting);
-  const Exit exit = course.fault.empty() ? kExitGood : kExitDiverged;
+  const Exit exit = course.fault.empty() ? match.exit() : kExitDiverged;
   Json digests = Json::array();
   for (std::uint64_t tick = course.begin; tick <= course.last_tick(); ++tick) {
     const std::string digest = hex16(course.at(tick));
@@ -59,7 +59,7 @@ Exit print_tick(const TraceCommand& options, bool json) {
     throw Failure(kExitUsage, "--object: no phase of tick " + std::to_string(options.tick) +
                                   " knows a " + options.detail.object);
   }
-  const Exit exit = trace.fault.empty() ? kExitGood : kExitDiverged;
+  const Exit exit = trace.fault.empty() ? match.exit() : kExitDiverged;
   if (json) {
     Json object = {{"match", match.name}, {"tick", options.tick}};
     object.update(to_json(trace));

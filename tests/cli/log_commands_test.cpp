@@ -186,6 +186,7 @@ TEST_F(LogCommand, SalvageKeepsThePrefixAndSaysWhatIsLost) {
     command.push_back("--salvage");
     const Ran taken = run_program(command);
     EXPECT_EQ(taken.exit, 0) << command[0] << taken.out << taken.err;
+    EXPECT_THAT(taken.out + taken.err, HasSubstr("salvaged after 60 good ticks")) << command[0];
   }
   const Ran against = run_program({"bisect", log_, "--against", places::program(), "--salvage"});
   EXPECT_EQ(against.out, "equal for 60 ticks\n") << against.err;
@@ -210,6 +211,16 @@ TEST_F(LogCommand, ATornTailIsDroppedWithItsBytesNamed) {
   for (const auto& command : std::vector<std::vector<std::string>>{
            {"replay", log_}, {"info", log_}, {"export", log_}, {"cut", log_, "-o", out}}) {
     EXPECT_EQ(run_program(command).exit, 3) << command[0];
+  }
+  for (const auto& command :
+       std::vector<std::vector<std::string>>{{"trace", log_},
+                                             {"trace", log_, "--tick", "80"},
+                                             {"diff", log_, log_},
+                                             {"bisect", log_, log_},
+                                             {"bisect", log_, "--against", places::program()}}) {
+    const Ran stepped = run_program(command);
+    EXPECT_EQ(stepped.exit, 3) << command[0];
+    EXPECT_THAT(stepped.err, HasSubstr(log_ + ": torn after 80 good ticks")) << command[0];
   }
   EXPECT_EQ(run_program({"verify", out}).exit, 0) << "and all that is good was written";
 }
