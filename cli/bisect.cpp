@@ -44,6 +44,10 @@ void bisect_worlds(const Suspect& a, const Suspect& b, std::uint64_t ticks, std:
   if (const auto tick = first_difference(course_a, course_b)) {
     finding.ticks = *tick == course_a.begin ? 0 : *tick - 1 - course_a.begin;
     finding.blame = blame_tick(a, b, *tick, fields);
+  } else if (!course_a.fault.empty() && course_a.last_tick() == course_b.last_tick()) {
+    --finding.ticks;  // The last digest is still that of the tick before.
+    finding.notes.push_back("neither steps to tick " + std::to_string(course_a.last_tick()) + ": " +
+                            course_a.fault);
   } else if (course_a.digests.size() != course_b.digests.size()) {
     const bool a_ends = course_a.digests.size() < course_b.digests.size();
     finding.notes.push_back((a_ends ? finding.name_a : finding.name_b) +
@@ -65,12 +69,14 @@ void check_record(const Match& match, std::uint64_t ticks, Finding& finding) {
   const Course course = run_course(match, ticks, {});
   for (std::uint64_t tick = match.begin() + 1; tick <= course.last_tick(); ++tick) {
     const std::uint64_t recorded = match.recorded_digest(tick);
-    if (recorded == course.at(tick)) continue;
-    finding.notes.push_back(match.name + " was recorded by another build, or is damaged: at tick " +
-                            std::to_string(tick) + " it says " + hex16(recorded) +
-                            ", this program makes " + hex16(course.at(tick)) +
-                            "; to go on: cycloid bisect " + match.name +
-                            " --against PROGRAM, with the cycloid that wrote it");
+    const bool made = course.fault.empty() || tick < course.last_tick();
+    if (made && recorded == course.at(tick)) continue;
+    finding.notes.push_back(
+        match.name + " was recorded by another build, or is damaged: at tick " +
+        std::to_string(tick) + " it says " + hex16(recorded) + ", this program " +
+        (made ? "makes " + hex16(course.at(tick)) : "cannot make it: " + course.fault) +
+        "; to go on: cycloid bisect " + match.name +
+        " --against PROGRAM, with the cycloid that wrote it");
     return;
   }
 }

@@ -40,9 +40,10 @@ struct Found {
   std::optional<std::uint64_t> state_tick;
   std::vector<solver::Difference> fields;
   std::optional<Blame> blame;  ///< Where in that tick; no tick has made the first state.
-  std::string other;           ///< What else is not the same, in a sentence.
+  std::string other;           ///< What else is not as it should be, in words.
 
   bool any() const { return input_tick || state_tick || !other.empty(); }
+  void note(const std::string& sentence) { other += (other.empty() ? "" : "; ") + sentence; }
 };
 
 /// Whether the states are the same; else notes where they are not.
@@ -57,34 +58,72 @@ bool same_state(const Side& a, const Side& b, std::size_t fields, Found& found) 
   return false;
 }
 
-/// Steps both; false where that is the end of the comparison.
-bool step_both(Side& a, Side& b, std::uint64_t tick, Found& found) {
-  const auto inputs_a = a.match.inputs(tick, a.simulation.seats());
-  const auto inputs_b = b.match.inputs(tick, b.simulation.seats());
-  if (!found.input_tick) {
-    found.input_text = input_difference(inputs_a, inputs_b);
-    if (!found.input_text.empty()) found.input_tick = tick;
+void compare_inputs_of(const Side& a, const Side& b, std::uint64_t tick, Found& found) {
+  if (found.input_tick) return;
+  found.input_text = input_difference(a.match.inputs(tick, a.simulation.seats()),
+                                      b.match.inputs(tick, b.simulation.seats()));
+  if (!found.input_text.empty()) found.input_tick = tick;
+}
+
+enum class Stepped : std::uint8_t { kBoth, kOne, kNeither };
+
+/// Steps both, and notes who cannot.
+Stepped step_both(Side& a, Side& b, std::uint64_t tick, Found& found) {
+  const solver::Error error_a = a.simulation.step(a.match.inputs(tick, a.simulation.seats()));
+  const solver::Error error_b = b.simulation.step(b.match.inputs(tick, b.simulation.seats()));
+  if (error_a.ok() && error_b.ok()) return Stepped::kBoth;
+  if (!error_a.ok() && !error_b.ok()) {
+    const std::string text_a = error_text(error_a);
+    const std::string text_b = error_text(error_b);
+    found.note("neither steps to tick " + std::to_string(tick) + ": " + text_a +
+               (text_a == text_b ? "" : " against " + text_b));
+    return Stepped::kNeither;
   }
-  const solver::Error error_a = a.simulation.step(inputs_a);
-  const solver::Error error_b = b.simulation.step(inputs_b);
-  if (error_a.ok() && error_b.ok()) return true;
-  if (error_a.ok() != error_b.ok()) {
-    found.other = "at tick " + std::to_string(tick) + " only " + (error_a.ok() ? b : a).match.name +
-                  " does not step: " + error_text(error_a.ok() ? error_b : error_a);
-  }
-  return false;
+  found.note("at tick " + std::to_string(tick) + " only " + (error_a.ok() ? b : a).match.name +
+             " does not step: " + error_text(error_a.ok() ? error_b : error_a));
+  return Stepped::kOne;
 }
 
 /// Where two logs recorded unlike digests for what steps alike here, one was made by another world.
-bool same_record(const Side& a, const Side& b, std::uint64_t tick, Found& found) {
+/// @param replayed  What the replay has to say of it.
+bool same_record(const Side& a, const Side& b, std::uint64_t tick, const std::string& replayed,
+                 Found& found) {
   if (!a.match.log || !b.match.log) return true;
   const std::uint64_t digest_a = a.match.recorded_digest(tick);
   const std::uint64_t digest_b = b.match.recorded_digest(tick);
   if (digest_a == digest_b) return true;
-  found.other = "recorded digests differ at tick " + std::to_string(tick) + ": " + hex16(digest_a) +
-                " against " + hex16(digest_b) + "; replayed here both are " +
-                hex16(a.simulation.digest());
+  found.note("recorded digests differ at tick " + std::to_string(tick) + ": " + hex16(digest_a) +
+             " against " + hex16(digest_b) + replayed);
   return false;
+}
+
+/// From a tick on that neither world can make: the first inputs and records that differ.
+void compare_unstepped(const Side& a, const Side& b, std::uint64_t first, std::uint64_t last,
+                       Found& found) {
+  bool same = true;
+  for (std::uint64_t tick = first; tick <= last; ++tick) {
+    compare_inputs_of(a, b, tick, found);
+    same = same && same_record(a, b, tick, "", found);
+  }
+}
+
+/// Steps both to tick `last`; false where the rest is not the same match any more.
+bool compare_ticks(Side& a, Side& b, std::uint64_t last, const DiffOptions& options, Found& found) {
+  const std::uint64_t begin = a.match.begin();
+  for (std::uint64_t tick = begin + 1; tick <= last; ++tick) {
+    compare_inputs_of(a, b, tick, found);
+    const Stepped stepped = step_both(a, b, tick, found);
+    if (stepped == Stepped::kOne) return false;
+    if (stepped == Stepped::kNeither) {
+      compare_unstepped(a, b, tick, last, found);
+      return true;
+    }
+    found.ticks = tick - begin;
+    if (!same_state(a, b, options.fields, found)) return false;
+    const std::string replayed = "; replayed here both are " + hex16(a.simulation.digest());
+    if (!same_record(a, b, tick, replayed, found)) return false;
+  }
+  return true;
 }
 
 Found compare(Side& a, Side& b, const DiffOptions& options) {
@@ -104,15 +143,10 @@ Found compare(Side& a, Side& b, const DiffOptions& options) {
   if (!same_state(a, b, options.fields, found)) return found;
   const std::uint64_t ticks_a = a.match.ticks(b.match.ticks(begin + options.ticks));
   const std::uint64_t ticks_b = b.match.ticks(ticks_a);
-  for (std::uint64_t tick = begin + 1; tick <= std::min(ticks_a, ticks_b); ++tick) {
-    if (!step_both(a, b, tick, found)) return found;
-    found.ticks = tick - begin;
-    if (!same_state(a, b, options.fields, found)) return found;
-    if (!same_record(a, b, tick, found)) return found;
-  }
+  if (!compare_ticks(a, b, std::min(ticks_a, ticks_b), options, found)) return found;
   if (ticks_a != ticks_b) {
-    found.other = a.match.name + " has " + std::to_string(ticks_a) + " ticks, " + b.match.name +
-                  " has " + std::to_string(ticks_b);
+    found.note(a.match.name + " has " + std::to_string(ticks_a) + " ticks, " + b.match.name +
+               " has " + std::to_string(ticks_b));
   }
   return found;
 }

@@ -14,6 +14,7 @@ using testing::AnyOf;
 using testing::ContainsRegex;
 using testing::Each;
 using testing::HasSubstr;
+using testing::Not;
 using testing::StartsWith;
 
 constexpr const char* kAValueAgainstAnother =
@@ -66,6 +67,19 @@ TEST_F(TwoLogs, OfWhichOneWasRecordedElsewhereAskForTheBuildThatWroteIt) {
   EXPECT_THAT(ran.out, StartsWith(b_ + " was recorded by another build, or is damaged: at tick 5 "
                                        "it says 0000000000000abc"));
   EXPECT_THAT(ran.out, HasSubstr("cycloid bisect " + b_ + " --against PROGRAM"));
+}
+
+TEST_F(TwoLogs, ThatStopSteppingAreNotEqualAndNoDigestIsMadeUp) {
+  rewrite_log(a_, a_, [](protocol::Log& log) { add_seat(9, log); });
+  const Ran ran = run_program({"bisect", a_, a_});
+  EXPECT_EQ(ran.exit, 1);
+  EXPECT_THAT(ran.out, StartsWith("neither steps to tick 9: k"));
+  EXPECT_THAT(ran.out, HasSubstr(", this program cannot make it: k"));
+  EXPECT_THAT(ran.out, Not(HasSubstr("this program makes")));
+  const Ran builds = run_program({"bisect", a_, "--against", places::program(), "--json"});
+  EXPECT_EQ(builds.exit, 1);
+  EXPECT_EQ(builds.json()["ticks"], 8);
+  EXPECT_THAT(builds.json()["notes"][0].get<std::string>(), StartsWith("neither steps to tick 9"));
 }
 
 TEST_F(TwoLogs, OfOtherLengthsAreNotEqual) {
@@ -175,9 +189,8 @@ std::string digest_by(const std::string& program, const std::string& scene, int 
 TEST_P(WrongFriction, IsNoticedByTheGoldens) {
   const std::string goldens = read_text(places::source("tests/determinism/goldens.txt"));
   EXPECT_THAT(goldens, HasSubstr(digest_by(places::program(), GetParam(), 100)));
-  EXPECT_THAT(
-      goldens,
-      testing::Not(HasSubstr(digest_by(places::wrong_friction_program(), GetParam(), 100))));
+  EXPECT_THAT(goldens,
+              Not(HasSubstr(digest_by(places::wrong_friction_program(), GetParam(), 100))));
 }
 
 TEST(WrongVelocity, IsNamedByPhaseAndBody) {
@@ -189,7 +202,7 @@ TEST(WrongVelocity, IsNamedByPhaseAndBody) {
   EXPECT_THAT(blame["object"].get<std::string>(), StartsWith("body "));
   EXPECT_THAT(blame["fields"][0]["field"].get<std::string>(), StartsWith("velocity["));
   EXPECT_THAT(read_text(places::source("tests/determinism/goldens.txt")),
-              testing::Not(HasSubstr(digest_by(places::wrong_velocity_program(), "wall", 100))));
+              Not(HasSubstr(digest_by(places::wrong_velocity_program(), "wall", 100))));
 }
 
 TEST(WrongFrictionLog, OfAnotherBuildIsBisectedByRunningThatBuild) {

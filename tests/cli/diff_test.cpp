@@ -80,6 +80,28 @@ TEST_F(DiffLogs, LogEqualsItsSceneAndAnotherLengthIsADifference) {
   EXPECT_THAT(ran.out, HasSubstr("has 40 ticks"));
 }
 
+/// That both are bad in the same way is no reason to call them equal, nor to look no further.
+TEST_F(DiffLogs, ThatBothStopSteppingIsSaidWithWhatDiffersBehind) {
+  rewrite_log(a_, a_, [](protocol::Log& log) { add_seat(9, log); });
+  const Ran same = run_program({"diff", a_, a_});
+  EXPECT_EQ(same.exit, 1);
+  EXPECT_THAT(same.out, ContainsRegex("^neither steps to tick 9: k[A-Z][A-Za-z]+ [^;]+\n$"));
+  EXPECT_EQ(run_program({"diff", a_, a_, "--json"}).json()["ticks"], 8);
+  rewrite_log(a_, b_, [](protocol::Log& log) {
+    log.ticks.resize(30);
+    log.ticks[19].digest = 0xabc;
+    log.ticks[24].frame.seats[0].input.buttons ^= 1;
+    log.footer->ticks = 30;
+    log.footer->digest = log.ticks.back().digest;
+  });
+  const Ran other = run_program({"diff", a_, b_});
+  EXPECT_EQ(other.exit, 1);
+  EXPECT_THAT(other.out, StartsWith("inputs first differ at tick 25: seat 0: buttons: "));
+  EXPECT_THAT(other.out, HasSubstr("neither steps to tick 9: "));
+  EXPECT_THAT(other.out, HasSubstr("; recorded digests differ at tick 20: "));
+  EXPECT_THAT(other.out, HasSubstr(" has 40 ticks, " + b_ + " has 30"));
+}
+
 TEST_F(DiffLogs, UnlikeRecordedDigestsOfLikeFramesAreADifference) {
   rewrite_log(a_, b_, [](protocol::Log& log) { log.ticks[4].digest = 0xabc; });
   const Ran ran = run_program({"diff", a_, b_});

@@ -30,6 +30,12 @@ inline void rewrite_log(const std::string& from, const std::string& to,
   write_bytes(to, bytes);
 }
 
+/// From a tick on one seat more than the scene has: no world steps to it.
+inline void add_seat(std::uint64_t from, protocol::Log& log) {
+  for (protocol::LogTick& tick : log.ticks)
+    if (tick.frame.tick >= from) tick.frame.seats.emplace_back();
+}
+
 /// What may be done to the records of a log, in their order.
 struct RecordChanges {
   std::function<void(protocol::LogTick&)> tick = [](protocol::LogTick&) {};
