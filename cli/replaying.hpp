@@ -49,7 +49,8 @@ Replayed replay(const LoadedLog& loaded, const ReplayOptions& options);
 /// state of the first, to that of the second. So that the log is good if all parts are: the replay
 /// of each ends, byte by byte, in the state with which the next one begins.
 /// @pre options.on_tick is empty: parts would call it in any order.
-/// @returns what `replay` returns, of the parts up to the first that does not hold.
+/// @returns what `replay` returns, of the parts up to the first that does not hold. Where one ran
+/// out of time, the first divergence of those behind it, too, or else nothing of them.
 Replayed replay_in_parts(const LoadedLog& loaded, const ReplayOptions& options, int jobs);
 /// The same, with a simulation that was just made of the log's scene, and is then where it stopped.
 Replayed replay(const LoadedLog& loaded, const ReplayOptions& options,
