@@ -78,7 +78,7 @@ class Demo {
   void remove_older_log() const {
     std::error_code error;
     if (!std::filesystem::exists(options_.log, error)) return;
-    if (!protocol::looks_like_log(read_file(options_.log))) {
+    if (!is_log_file(options_.log)) {
       throw Failure(kExitUsage, "--log: " + options_.log + " is there and is no log");
     }
     std::filesystem::remove(options_.log);

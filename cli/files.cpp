@@ -29,7 +29,7 @@ PathKind kind_of(const std::string& path) {
   std::error_code error;
   const std::filesystem::file_status status = std::filesystem::status(path, error);
   return {std::filesystem::exists(status), std::filesystem::is_directory(status),
-          std::filesystem::is_regular_file(status)};
+          std::filesystem::is_regular_file(status), std::filesystem::is_character_file(status)};
 }
 
 static void find_below(const std::string& folder, const std::string& suffix,
@@ -86,7 +86,7 @@ std::string path_to(const std::string& file, const std::string& name) {
 PathKind kind_of(const std::string& path) {
   struct stat status {};
   if (stat(path.c_str(), &status) != 0) return {};
-  return {true, S_ISDIR(status.st_mode), S_ISREG(status.st_mode)};
+  return {true, S_ISDIR(status.st_mode), S_ISREG(status.st_mode), S_ISCHR(status.st_mode)};
 }
 
 static void find_below(const std::string& folder, const std::string& suffix,

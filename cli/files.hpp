@@ -10,7 +10,8 @@ namespace cycloid::cli {
 struct PathKind {
   bool exists = false;
   bool is_folder = false;
-  bool is_file = false;  ///< A regular one; links are followed.
+  bool is_file = false;    ///< A regular one; links are followed.
+  bool is_device = false;  ///< One that gives characters, maybe without end.
 };
 PathKind kind_of(const std::string& path);
 

@@ -3,6 +3,7 @@
 #include <iostream>
 #include <utility>
 
+#include "cli/files.hpp"
 #include "cli/output.hpp"
 
 namespace cycloid::cli {
@@ -30,8 +31,18 @@ Exit LoadedLog::exit() const {
   return log.state == LogState::kTorn && !salvaged ? kExitCorrupt : kExitGood;
 }
 
+bool is_log_file(const std::string& file) {
+  constexpr std::size_t kWordsBytes = 16;  // More than those with which a log begins.
+  return kind_of(file).is_file && protocol::looks_like_log(read_beginning(file, kWordsBytes));
+}
+
+std::vector<std::byte> read_log_bytes(const std::string& file) {
+  if (kind_of(file).is_device) throw Failure(kExitIo, file + ": is a device, not a file");
+  return read_file(file);
+}
+
 LoadedLog load_log(const std::string& file, const LoadOptions& options) {
-  return parse_log(file, read_file(file), options);
+  return parse_log(file, read_log_bytes(file), options);
 }
 
 LoadedLog parse_log(const std::string& file, std::span<const std::byte> bytes,

@@ -34,6 +34,11 @@ struct LoadOptions {
   bool salvage = false;  ///< Take the good prefix of a log with damage in its middle.
 };
 
+/// Whether a regular file begins as a log does. A Failure where it cannot be read.
+bool is_log_file(const std::string& file);
+/// The bytes of a log in a file or pipe, and a Failure as of any file. A device is refused: it may
+/// have no end.
+std::vector<std::byte> read_log_bytes(const std::string& file);
 /// Reads a log of which at least a prefix is good. A Failure (corrupt, incompatible, I/O) names the
 /// file and what is wrong with it.
 LoadedLog load_log(const std::string& file, const LoadOptions& options = {});

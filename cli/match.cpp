@@ -4,7 +4,6 @@
 #include <limits>
 #include <utility>
 
-#include "cli/files.hpp"
 #include "cli/output.hpp"
 
 namespace cycloid::cli {
@@ -37,14 +36,9 @@ scenes::Simulation Match::start(const StepSetting& setting) const {
              : make_simulation(scene, setting.workers, setting.lanes);
 }
 
-/// A file is a log when it says so by its name, or by its first bytes.
-static bool is_log(const std::string& what) {
-  if (what.ends_with(".cylog")) return true;
-  return kind_of(what).is_file && protocol::looks_like_log(read_file(what));
-}
-
 Match open_match(const std::string& what, const LoadOptions& options) {
-  if (!is_log(what)) return {what, {}, load_scene(what), nullptr};
+  const bool is_log = what.ends_with(".cylog") || is_log_file(what);
+  if (!is_log) return {what, {}, load_scene(what), nullptr};
   LoadedLog log = load_log(what, options);
   print_blemish(log);
   auto reader = std::make_shared<TickReader>(log);

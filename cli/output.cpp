@@ -25,7 +25,7 @@ void print_member(const std::string& name, const Json& value) {
             << '\n';
 }
 
-std::vector<std::byte> read_file(const std::string& file) {
+static std::ifstream open_file(const std::string& file) {
   if (kind_of(file).is_folder) throw Failure(kExitIo, file + ": is a directory");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
@@ -33,11 +33,25 @@ std::vector<std::byte> read_file(const std::string& file) {
     const std::string why = errno == 0 ? "" : ": " + std::generic_category().message(errno);
     throw Failure(kExitIo, file + ": cannot be opened" + why);
   }
+  return stream;
+}
+
+std::vector<std::byte> read_file(const std::string& file) {
+  std::ifstream stream = open_file(file);
   const std::string text((std::istreambuf_iterator<char>(stream)),
                          std::istreambuf_iterator<char>());
   if (stream.bad()) throw Failure(kExitIo, file + ": cannot be read");
   const auto* begin = reinterpret_cast<const std::byte*>(text.data());
   return {begin, begin + text.size()};
+}
+
+std::vector<std::byte> read_beginning(const std::string& file, std::size_t bytes_max) {
+  std::ifstream stream = open_file(file);
+  std::vector<std::byte> bytes(bytes_max);
+  stream.read(reinterpret_cast<char*>(bytes.data()), static_cast<std::streamsize>(bytes_max));
+  if (stream.bad()) throw Failure(kExitIo, file + ": cannot be read");
+  bytes.resize(static_cast<std::size_t>(stream.gcount()));
+  return bytes;
 }
 
 scenes::Scene load_scene(const std::string& what, scenes::Untuned untuned) {

@@ -33,6 +33,8 @@ void print_member(const std::string& name, const Json& value);
 
 /// The bytes of a file; a Failure with kExitIo naming it where it cannot be read.
 std::vector<std::byte> read_file(const std::string& file);
+/// Those at its beginning, as many as there are, and a Failure as of the whole.
+std::vector<std::byte> read_beginning(const std::string& file, std::size_t bytes_max);
 
 /// A catalogue scene or a scene file. A Failure names each mistake: kExitUsage where there is no
 /// such name, kExitIo where there is no such file, kExitCorrupt where the file is no scene.

@@ -51,7 +51,7 @@ std::vector<std::string> part_of(const std::vector<std::string>& files, const st
   for (const std::string& file : files) {
     bool is_mine = part.number == 1;  // What cannot be read is for one to complain about.
     try {
-      is_mine = part.holds(read_file(file));
+      is_mine = part.holds(read_log_bytes(file));
     } catch (const Failure&) {
     }
     if (is_mine) mine.push_back(file);

@@ -3,8 +3,10 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 #include <sys/resource.h>
+#include <sys/stat.h>
 
 #include <cstdlib>
+#include <filesystem>
 
 #include "tests/cli/program.hpp"
 #include "tests/places.hpp"
@@ -50,6 +52,19 @@ TEST(Demo, ReplacesAnOlderLogAndNothingElse) {
   write_text(file, "a letter");
   EXPECT_EQ(run_program({"demo", "half-pipe", "--seconds", "0.5", "--log", file}).exit, 2);
   EXPECT_EQ(read_text(file), "a letter");
+}
+
+/// A pipe that nobody writes to would never say what it is, nor a device where it ends.
+TEST(Demo, TakesNoPipeAndNoDeviceForAnOlderLog) {
+  const Folder folder;
+  const std::string pipe = folder.file("pipe.cylog");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  for (const std::string& file : {pipe, std::string("/dev/null")}) {
+    const Ran ran = run_program({"demo", "half-pipe", "--seconds", "0.5", "--log", file});
+    EXPECT_EQ(ran.exit, 2) << file;
+    EXPECT_THAT(ran.err, HasSubstr("--log: " + file + " is there and is no log"));
+  }
+  EXPECT_TRUE(std::filesystem::is_fifo(pipe));
 }
 
 TEST(Demo, SaysWhichPartFailed) {
