@@ -23,6 +23,12 @@ bool is_open_file(const std::string& path) {
   return path.starts_with("/proc/") || path.starts_with("/dev/fd/");
 }
 
+/// What nobody can tell may be one: who reads it will say what is wrong.
+static bool may_be_file(const std::string& path) {
+  const PathKind kind = kind_of(path);
+  return kind.is_file || !kind.exists;
+}
+
 #if defined(__cpp_lib_filesystem)
 
 PathKind kind_of(const std::string& path) {
@@ -34,10 +40,17 @@ PathKind kind_of(const std::string& path) {
 
 static void find_below(const std::string& folder, const std::string& suffix,
                        std::vector<std::string>& found) {
-  for (const auto& entry : std::filesystem::recursive_directory_iterator(folder)) {
-    const std::string name = entry.path().generic_string();
-    if (name.ends_with(suffix) && entry.is_regular_file()) found.push_back(name);
+  using std::filesystem::directory_iterator;
+  std::error_code error;
+  directory_iterator entry(folder, error);
+  for (; !error && entry != directory_iterator(); entry.increment(error)) {
+    const std::string path = entry->path().generic_string();
+    std::error_code unknown;
+    const bool is_folder = std::filesystem::is_directory(entry->symlink_status(unknown));
+    if (is_folder) find_below(path, suffix, found);
+    if (!is_folder && path.ends_with(suffix) && may_be_file(path)) found.push_back(path);
   }
+  if (error) found.push_back(folder);
 }
 
 std::error_code replace_file(const std::string& by, const std::string& file) {
@@ -92,13 +105,14 @@ PathKind kind_of(const std::string& path) {
 static void find_below(const std::string& folder, const std::string& suffix,
                        std::vector<std::string>& found) {
   const std::unique_ptr<DIR, int (*)(DIR*)> entries(opendir(folder.c_str()), closedir);
-  if (!entries) throw std::system_error(errno, std::generic_category(), folder);
+  if (!entries) return found.push_back(folder);
   while (const dirent* entry = readdir(entries.get())) {
     const std::string name = entry->d_name;
     if (name == "." || name == "..") continue;
     const std::string path = folder + (folder.ends_with('/') ? "" : "/") + name;
-    if (entry->d_type == DT_DIR) find_below(path, suffix, found);
-    if (name.ends_with(suffix) && kind_of(path).is_file) found.push_back(path);
+    const bool is_folder = entry->d_type == DT_DIR;
+    if (is_folder) find_below(path, suffix, found);
+    if (!is_folder && name.ends_with(suffix) && may_be_file(path)) found.push_back(path);
   }
 }
 

@@ -16,7 +16,8 @@ struct PathKind {
 PathKind kind_of(const std::string& path);
 
 /// The regular files anywhere in a folder whose name ends so, sorted, with '/' between the parts.
-/// Folders behind links are not entered. @throws std::exception where a folder cannot be read.
+/// Folders behind links are not entered. With what cannot be looked into, for who reads it to say
+/// why: folders, and links of that name that lead nowhere.
 std::vector<std::string> files_below(const std::string& folder, const std::string& suffix);
 
 /// Puts a file in the place of another, at once; with the mode of that where there is one, but for

@@ -26,13 +26,14 @@ void print_member(const std::string& name, const Json& value) {
 }
 
 static std::ifstream open_file(const std::string& file) {
-  if (kind_of(file).is_folder) throw Failure(kExitIo, file + ": is a directory");
   errno = 0;
   std::ifstream stream(file, std::ios::binary);
   if (!stream) {
     const std::string why = errno == 0 ? "" : ": " + std::generic_category().message(errno);
     throw Failure(kExitIo, file + ": cannot be opened" + why);
   }
+  // Only now: of a folder that may not be opened, that is what is wrong.
+  if (kind_of(file).is_folder) throw Failure(kExitIo, file + ": is a directory");
   return stream;
 }
 
