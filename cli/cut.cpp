@@ -1,6 +1,7 @@
 #include <iostream>
 #include <memory>
 #include <optional>
+#include <vector>
 
 #include "cli/commands.hpp"
 #include "cli/output.hpp"
@@ -67,12 +68,20 @@ protocol::LogHeader header_of(const LoadedLog& loaded, const CutBounds& bounds) 
   return header;
 }
 
+/// Those of the frame of a tick: in a log that begins with its state, as the keyframe has them.
+/// @pre 0 < tick, and the log holds the tick or begins behind it
+std::vector<protocol::SeatFrame> seats_at(const LoadedLog& loaded, std::uint64_t tick) {
+  if (tick >= loaded.first_tick()) return TickReader(loaded).at(tick).frame.seats;
+  protocol::LogCursor cursor(*loaded.bytes, loaded.log.start);
+  (void)cursor.next();
+  return cursor.keyframe().seats;
+}
+
 protocol::LogKeyframe keyframe_of(const LoadedLog& loaded, const scenes::Simulation& simulation) {
   protocol::LogKeyframe keyframe;
   keyframe.tick = simulation.tick();
   keyframe.digest = simulation.digest();
-  if (keyframe.tick >= loaded.first_tick())
-    keyframe.seats = TickReader(loaded).at(keyframe.tick).frame.seats;
+  keyframe.seats = seats_at(loaded, keyframe.tick);
   simulation.encode(keyframe.state);
   return keyframe;
 }

@@ -9,6 +9,7 @@
 #include <sstream>
 #include <thread>
 
+#include "protocol/log/records.hpp"
 #include "tests/cli/logs.hpp"
 #include "tests/cli/program.hpp"
 #include "tests/places.hpp"
@@ -22,6 +23,19 @@ using testing::StartsWith;
 protocol::LogSummary summary_of(const std::string& file) {
   const std::string text = read_text(file);
   return protocol::scan_log(std::as_bytes(std::span(text)));
+}
+
+/// Seats and state, as bytes; none of a log that does not begin with them.
+std::string first_keyframe_of(const std::string& file) {
+  const std::string text = read_text(file);
+  const protocol::LogSummary log = summary_of(file);
+  if (log.header.branch_tick == 0) return "";
+  protocol::LogCursor cursor(std::as_bytes(std::span(text)), log.start);
+  EXPECT_EQ(cursor.next(), protocol::LogCursor::Step::kKeyframe);
+  EXPECT_FALSE(cursor.keyframe().seats.empty());
+  protocol::Bytes bytes;
+  protocol::append_keyframe(cursor.keyframe(), bytes);
+  return {reinterpret_cast<const char*>(bytes.data()), bytes.size()};
 }
 
 /// A log of 120 ticks with a state after every 20th, and the digests of all ticks.
@@ -91,6 +105,7 @@ TEST_F(LogCommand, ACutIsALogOfItsOwn) {
     const std::string again = folder_.file("again.cylog");
     EXPECT_EQ(run_program({"cut", cut, "-o", again}).exit, 0) << "from where it begins";
     EXPECT_EQ(summary_of(again).header.branch_tick, from);
+    EXPECT_EQ(first_keyframe_of(again), first_keyframe_of(cut));
   }
   EXPECT_EQ(run_program({"cut", log_, "--from", "9", "--to", "8", "-o", cut}).exit, 2);
   const Ran nothing = run_program({"cut", log_, "--from", "120", "-o", cut});
