@@ -246,10 +246,10 @@ void add_golden(CLI::App& app, Action& action) {
   make->add_flag("--catalogue", making->catalogue, "Every scene of the catalogue");
   action.files.writes(make->add_option("-o", making->file, "The file to write; stdout without it"));
   make->add_option("--ticks", making->ticks, "How many ticks; the last is always listed [600]")
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::uint64_t{1}, scenes::kGoldenTicksMax));
   make->add_option("--at", making->at, "The ticks to list, by commas [1,10,100,600]")
       ->delimiter(',')
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::uint64_t{1}, scenes::kGoldenTicksMax));
   add_play_options(make, making->play);
   make->callback([making, &action] {
     action.run = [=, &action] { return make_golden(*making, action.json); };

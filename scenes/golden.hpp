@@ -13,6 +13,9 @@ namespace cycloid::scenes {
 
 /// The number in the first line of a golden file.
 inline constexpr std::uint32_t kGoldenFormat = 1;
+/// The last tick of a scene is not behind this one, two weeks at 60 Hz: a file's words must not
+/// take a reader, who folds the whole script, as long as they please.
+inline constexpr std::uint64_t kGoldenTicksMax = 100'000'000;
 /// What a chain is before the first tick.
 inline constexpr std::uint64_t kChainStart = 0;
 

@@ -127,6 +127,9 @@ class GoldenReader {
     const auto inputs = hexadecimal(words[4], 16);
     if (!name || !ticks || *ticks == 0 || !digest || !inputs)
       return "a scene must be 'scene NAME TICKS SCENE-DIGEST INPUTS-DIGEST'";
+    if (*ticks > kGoldenTicksMax)
+      return "the scene '" + *name + "' has " + std::to_string(*ticks) + " ticks, at most " +
+             std::to_string(kGoldenTicksMax) + " are read";
     if (!places_.emplace(*name, file_.scenes.size()).second)
       return "the scene '" + *name + "' is there twice";
     scene.name = *name;

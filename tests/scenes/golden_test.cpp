@@ -74,6 +74,7 @@ TEST(Golden, EveryMistakeIsNamedWithItsLine) {
       {replaced(good, "solver-version 7", "solver-version 4294967296"), 2, "solver-version N"},
       {replaced(good, "solver-version", "Solver-version"), 2, "solver-version N"},
       {replaced(good, "half-pipe 10 ", "half-pipe 0 "), 3, "scene NAME TICKS"},
+      {replaced(good, "half-pipe 10 ", "half-pipe 100000001 "), 3, "has 100000001 ticks, at most"},
       {replaced(good, "half-pipe 10 ", "half-pipe 10  "), 3, "scene NAME TICKS"},
       {replaced(good, "0000000000000001", "000000000000001"), 3, "scene NAME TICKS"},
       {replaced(good, "0000000000000002", "000000000000000G"), 3, "scene NAME TICKS"},
