@@ -5,6 +5,7 @@
 #include <random>
 
 #include "protocol/crc32c.hpp"
+#include "protocol/log/chunks.hpp"
 #include "protocol/log_format.hpp"
 #include "tests/protocol/samples.hpp"
 
@@ -57,6 +58,23 @@ TEST(LogBlocks, FlipsAroundTheEndOfABlockAreCorruption) {
       sample.bytes[byte] ^= static_cast<std::byte>(1u << bit);
     }
   }
+}
+
+/// Where a block has no room for another chunk its rest is zeros, which no check covers.
+TEST(LogBlocks, FlipsOfTheRestOfABlockAreCorruption) {
+  constexpr std::size_t kLeastChunk = kChunkHeadBytes + 1 + kCheckBytes;
+  samples::LogSample sample = long_sample();
+  int flips = 0;
+  for (const std::size_t end : long_sample().ends) {
+    const std::size_t rest = kLogBlockBytes - (end - sample.ends[0]) % kLogBlockBytes;
+    if (rest >= kLeastChunk || end == sample.bytes.size()) continue;
+    for (std::size_t byte = end; byte < end + rest; ++byte, ++flips) {
+      sample.bytes[byte] ^= std::byte{1};
+      EXPECT_EQ(scan_log(sample.bytes).state, LogState::kCorrupt) << byte;
+      sample.bytes[byte] ^= std::byte{1};
+    }
+  }
+  EXPECT_GT(flips, 0);
 }
 
 TEST(LogBlocks, ALostOrRepeatedBlockIsCorruption) {

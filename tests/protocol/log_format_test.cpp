@@ -6,6 +6,7 @@
 #include <array>
 
 #include "protocol/little_endian.hpp"
+#include "protocol/log/records.hpp"
 #include "solver/version.hpp"
 #include "tests/protocol/samples.hpp"
 
@@ -209,6 +210,42 @@ TEST(LogFormat, TextThatIsNoUtf8IsADamagedHeader) {
   Bytes bytes;
   LogEncoder encoder(header, bytes);
   EXPECT_EQ(read_log(bytes).state, LogState::kCorrupt);
+}
+
+// With checks that fit: each is one form too many, or more than there may be.
+TEST(LogFormat, RecordsThatNoWriterMakesAreRefused) {
+  const auto reads = [](std::size_t seats, std::vector<int> behind_digest) {
+    LogTick tick;
+    tick.frame.seats.resize(seats);
+    Bytes payload(8);
+    for (const int byte : behind_digest) payload.push_back(static_cast<std::byte>(byte));
+    return read_tick(payload, tick);
+  };
+  const int absent = static_cast<int>(SeatFrame{}.origin);
+  const int given = static_cast<int>(Origin::kGiven);
+  EXPECT_TRUE(reads(0, {1, 0x80, 0x02})) << "256 seats";
+  EXPECT_FALSE(reads(0, {1, 0x81, 0x02})) << "257 seats";
+  EXPECT_FALSE(reads(3, {1, 3})) << "as many seats as before";
+  EXPECT_TRUE(reads(3, {1 << 3, 32, given}));
+  EXPECT_FALSE(reads(3, {1 << 3, 32, absent})) << "the origin that it has";
+  EXPECT_FALSE(reads(3, {31 << 3, 1, 32, given})) << "few seats, said as many";
+  EXPECT_FALSE(reads(3, {1 << 3, 32 | 3 << 6, 2, given})) << "few skipped, said as many";
+  EXPECT_TRUE(reads(2, {2, 1, 1, 1}));
+  EXPECT_FALSE(reads(2, {2, 1, 1, 2})) << "an event of a seat that is not there";
+  std::vector<int> events = {2, 0x81, 0x08};
+  for (int i = 0; i < 1025; ++i) events.insert(events.end(), {1, 0});
+  EXPECT_FALSE(reads(2, events)) << "too many events";
+
+  Bytes keyframe;
+  append_keyframe({1, 2, {SeatFrame{Origin::kGiven, {}}}, {}}, keyframe);
+  EXPECT_TRUE(read_keyframe(keyframe));
+  keyframe[18] = std::byte{9};
+  EXPECT_FALSE(read_keyframe(keyframe)) << "no such origin";
+  Bytes footer;
+  append_footer({1, 2, {{1, 2, 3}}}, footer);
+  EXPECT_TRUE(read_footer(footer));
+  footer.push_back({});
+  EXPECT_FALSE(read_footer(footer)) << "bytes behind its index";
 }
 
 }  // namespace
