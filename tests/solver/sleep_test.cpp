@@ -328,6 +328,27 @@ TEST(Sleep, WhatIsKeptAboutManySleepersShowsNowhere) {
   EXPECT_GT(events, 250u);
 }
 
+// What is kept about which contacts rest goes with a body: one world goes on with it, the other has
+// forgotten all. The contacts of the one that goes lie among those of sleepers.
+TEST(Sleep, ABodyThatGoesLeavesTheOthersTheirContacts) {
+  const auto digest_after = [](bool forgets) {
+    World<2> world = make_world(with_gravity<2>());
+    add_ground<2>(world, up<2>());
+    const std::vector<BodyId> woken = add_stack(world, 4);
+    add_stack(world, 4, 5.0f);
+    step(world, 300);
+    EXPECT_TRUE(world.apply_impulse(woken[3], {{0.1f, 0.0f}}).ok());
+    step(world, 2);
+    EXPECT_TRUE(world.destroy_body(woken[1]).ok());
+    const WorldState<2> saved = world.state();
+    if (forgets) world.restore(saved);
+    step(world, 1);
+    EXPECT_EQ(world.statistics().asleep, 4u);
+    return world.digest();
+  };
+  EXPECT_EQ(digest_after(false), digest_after(true));
+}
+
 // Boxes that overlap under a load rock on one another by less than a thousandth; whatever that
 // turns over must not cost their contacts what they know of the load.
 TEST(Rest, APyramidThatIsNotLetSleepStandsStill) {
