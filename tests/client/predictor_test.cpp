@@ -179,6 +179,32 @@ TEST_F(PredictorTest, AMatchThatGoesBackToTheConfirmedTickForgetsWhatWasSaidAfte
   EXPECT_EQ(simulation_.digest(), right.digest());
 }
 
+// Of a tick that never came to be, because the server put another input in the place of mine.
+TEST(PredictorFaults, AFaultThatWasOnlyPredictedIsTakenBack) {
+  scenes::Scene scene = scene_of("half-pipe");
+  for (scenes::Control& control : scene.seats[0].controls) {
+    control.effect = scenes::Effect::kForce;
+    control.value = {1.0e11f, 1.0e11f, 0.0f};
+  }
+  scenes::Simulation right = SimulatedRoom::make(scene);
+  scenes::Simulation mine = SimulatedRoom::make(scene);
+  Predictor predictor(mine, {5, 0, one_shot_buttons(scene)});
+  scenes::SeatInput all;
+  all.axes.fill(32767);
+  all.buttons = 0xffff;
+  const Inputs neutral(2);
+  for (std::uint64_t tick = 1; tick <= 3; ++tick) {
+    predictor.hear(tick, all);
+    predictor.settle();
+    EXPECT_EQ(predictor.statistics().faults, tick);
+    EXPECT_EQ(predictor.predicted_tick(), tick - 1);
+    EXPECT_FALSE(mine.fault());
+    ASSERT_TRUE(right.step(neutral).ok());
+    ASSERT_TRUE(predictor.confirm(neutral).ok());
+    EXPECT_EQ(mine.digest(), right.digest());
+  }
+}
+
 TEST_F(PredictorTest, WrongNumberOfInputsChangesNothing) {
   for (std::uint64_t tick = 1; tick <= 3; ++tick) say(tick);
   const std::uint64_t digest = simulation_.digest();

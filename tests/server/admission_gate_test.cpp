@@ -264,5 +264,22 @@ TEST(Gate, DrainingTakesNobodyIn) {
   EXPECT_EQ(fixture.asked, 0);
 }
 
+// Within the leeway behind its expiry a token is still taken, and so has still to be remembered.
+TEST(Gate, AtTheBoundOfUsedTokensForgetsNoneThatIsStillTaken) {
+  GateOptions options = GateFixture::required();
+  options.nonces_max = 1;
+  options.leeway_s = 30;
+  GateFixture fixture(options);
+  fixture.now.unix_s = arena_token().expires_unix_s + 10;
+  EXPECT_TRUE(std::holds_alternative<GateAdmitted>(fixture.say(hello_with(arena_token(1)))));
+  const auto code_of = [&](std::uint64_t number) {
+    const GateResult result = fixture.say(hello_with(arena_token(number)));
+    const auto* refused = std::get_if<GateRefused>(&result);
+    return refused == nullptr ? Refusal{} : refused->code;
+  };
+  EXPECT_EQ(code_of(2), Refusal::kRateLimited);
+  EXPECT_EQ(code_of(1), Refusal::kTokenUsed);
+}
+
 }  // namespace
 }  // namespace cycloid::server

@@ -206,6 +206,18 @@ TEST_F(DesyncDeskTest, PartsOutOfOrderAndOfAnotherTickEndTheInquiry) {
   }
 }
 
+TEST_F(DesyncDeskTest, AStateThatChangesItsSizeOnTheWayEndsTheInquiry) {
+  for (const std::uint32_t total_bytes : {100u, 5000u, 6000u}) {
+    open();
+    client_digests_.clear();
+    const std::uint64_t tick = diverge();
+    desk_->on_state_part(1, {tick, 5000, 0, std::vector<std::byte>(3000)}, *evidence_);
+    desk_->on_state_part(1, {tick, total_bytes, 3000, std::vector<std::byte>(3000)}, *evidence_);
+    EXPECT_EQ(desk_->held_bytes(), 0u);
+    EXPECT_THAT(only_finding().missing, HasSubstr("out of order"));
+  }
+}
+
 TEST_F(DesyncDeskTest, WhatIsSaidTwiceOrUnaskedIsCountedOnly) {
   open();
   const std::uint64_t tick = diverge();
@@ -279,6 +291,19 @@ TEST_F(DesyncDeskTest, OneInquiryAPeerTwoARoomAndSoManyAnHour) {
   now_ += 3600 * kSecondNs;
   EXPECT_TRUE(mismatch(6));
   EXPECT_EQ(desk_->counts().skipped, 3u);
+}
+
+// Votes come with every digest of a match that goes on for days.
+TEST_F(DesyncDeskTest, KeepsTheVotesOfTheLastEightTicks) {
+  open();
+  step_to(30);
+  for (std::uint64_t tick = 1; tick <= 9; ++tick)
+    desk_->on_digest(2, tick, client_digests_[tick - 1]);
+  for (const std::uint64_t tick : {1, 2}) {
+    const protocol::Digest said{tick, ~client_digests_[tick - 1]};
+    ASSERT_TRUE(desk_->on_mismatch({1, "guest", "their build", 0}, said, now_, *evidence_));
+    EXPECT_EQ(only_finding().votes.replicas, tick == 1 ? 0u : 1u);
+  }
 }
 
 TEST_F(DesyncDeskTest, SuspectsTheServerWhereItsOwnBitFlipped) {

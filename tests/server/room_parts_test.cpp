@@ -52,6 +52,15 @@ TEST(Outbox, IsBoundedInBytesAndRefusesWithoutChange) {
   EXPECT_FALSE(outbox.has_output(8));
 }
 
+TEST(Outbox, FramesThatAStateTakesThePlaceOfLeaveTheirRoom) {
+  Outbox outbox(100);
+  for (std::uint64_t tick = 5; tick < 10; ++tick) {
+    ASSERT_TRUE(outbox.push_frame(bytes_of(60), 1)) << tick;
+    outbox.begin_state(state_of(tick, 10));
+    EXPECT_EQ(outbox.bytes(), 0u);
+  }
+}
+
 TEST(Outbox, AStateTakesThePlaceOfFramesAndComesBetweenThem) {
   Outbox outbox(1000);
   ASSERT_TRUE(outbox.push_frame(bytes_of(1), 1));

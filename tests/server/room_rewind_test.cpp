@@ -185,6 +185,47 @@ TEST_F(RoomBranches, ADigestOfATickThatWasTakenBackIsNoDesync) {
   EXPECT_EQ(room_->statistics().desyncs, 1u) << "what was never taken back is compared as ever";
 }
 
+TEST_F(RoomBranches, ADigestOfATickThatWasTakenBackBeforeIsNoDesyncEither) {
+  open_with_mirror();
+  const PeerId id = player(200);
+  ASSERT_TRUE(room_->rewind(100));
+  (void)hear(id);
+  run(20);
+  ASSERT_TRUE(room_->rewind(110));
+  (void)hear(id);
+  run(95);
+  ASSERT_NE(log_.ticks.back().digest, mirror_->digests[200]);
+  say(id, protocol::Digest{200, mirror_->digests[200]});
+  EXPECT_EQ(room_->statistics().desyncs, 0u);
+}
+
+TEST_F(RoomBranches, WhoComesBackWithATickThatWasTakenBackBeforeIsGivenTheState) {
+  open_with_mirror();
+  room_->disconnect(player(105));
+  run(95);
+  ASSERT_TRUE(room_->rewind(100));
+  run(50);
+  ASSERT_TRUE(room_->rewind(130));
+  run(10);
+  mirror_->take(come_back(105));
+  EXPECT_EQ(mirror_->states, 2u) << "when it joined, and now";
+  EXPECT_EQ(mirror_->simulation.tick(), 140u);
+  EXPECT_EQ(mirror_->simulation.digest(), room_->digest());
+}
+
+TEST_F(RoomBranches, NoStateThatWasTakenBackIsGoneOnFrom) {
+  Limits limits;
+  limits.keyframe_ticks = 10;
+  open(limits);
+  mirror_.emplace(scene_);
+  const PeerId id = player(45);
+  ASSERT_TRUE(room_->rewind(5));
+  mirror_->take(hear(id));
+  play(id, 35, 100);
+  ASSERT_TRUE(room_->rewind(33));
+  EXPECT_EQ(room_->digest(), mirror_->digests[33]);
+}
+
 TEST_F(RoomBranches, WhoComesBackWithATickThatWasTakenBackIsGivenTheState) {
   for (const std::uint64_t lost : {120u, 150u}) {
     open_with_mirror();
