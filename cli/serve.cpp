@@ -211,7 +211,7 @@ void add_limits(CLI::App& command, server::Limits& limits) {
       ->check(CLI::PositiveNumber);
   command.add_option("--input-delay", limits.input_delay_ticks, "Lead of the inputs in ticks")
       ->capture_default_str()
-      ->check(CLI::Range(1, 256));
+      ->check(CLI::Range(1u, server::kInputDelayTicksMax));
   command.add_option("--connections", limits.connections_max, "Most connections at a time")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);

@@ -67,7 +67,7 @@ Keys client_limits() {
       integer(
           "snapshot_ticks", 1, 1000000, "3", false,
           [](C& c, const Value& v) { c.host.limits.room.snapshot_ticks = as<std::uint64_t>(v); }),
-      integer("input_delay_ticks", 1, 60, "2", false, [](C& c, const Value& v) {
+      integer("input_delay_ticks", 1, kInputDelayTicksMax, "2", false, [](C& c, const Value& v) {
         c.host.limits.room.input_delay_ticks = as<std::uint32_t>(v);
       })};
 }

@@ -6,9 +6,15 @@
 #include <cstdint>
 #include <string>
 
+#include "protocol/lockstep.hpp"
 #include "server/room/policy.hpp"
 
 namespace cycloid::server {
+
+/// The most lead that clients may be told to keep. Well within the window of inputs, so that what
+/// comes a little earlier than that is still in time.
+inline constexpr std::uint32_t kInputDelayTicksMax = 60;
+static_assert(kInputDelayTicksMax < protocol::kInputWindowTicks);
 
 /// What one room and its peers may use up; docs/protocol.md says what happens at each bound.
 /// None may be 0 unless its comment says so.
@@ -22,7 +28,8 @@ struct Limits {
   std::uint32_t catch_up_ticks_max = 8;  ///< In one `advance`; a room further behind is slowed.
   std::uint64_t digest_ticks = 60;       ///< Ticks between two digests to lockstep clients.
   std::uint64_t snapshot_ticks = 3;      ///< Ticks between two snapshots to snapshot clients.
-  std::uint32_t input_delay_ticks = 2;   ///< The lead that clients are told to keep at first.
+  /// The lead that clients are told to keep at first, up to kInputDelayTicksMax.
+  std::uint32_t input_delay_ticks = 2;
 
   std::chrono::nanoseconds queue_age{std::chrono::seconds{2}};  ///< Of the oldest waiting frame.
   std::uint32_t state_parts_per_tick_max = 8;                   ///< Of 16 KiB, to one client.

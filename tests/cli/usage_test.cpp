@@ -63,6 +63,8 @@ TEST(Usage, NumbersThatAnOptionCannotHoldAreRefused) {
       {{"token", "make", "--seat", "99999999999"},
        "--seat: Value 99999999999 not in range -1 to 255"},
       {{"serve", "half-pipe", "--tick-rate", "nan"}, "--tick-rate: 'nan' is no number"},
+      {{"serve", "half-pipe", "--port", "0", "--ticks", "1", "--input-delay", "61"},
+       "--input-delay: Value 61 not in range 1 to 60"},
       {{"serve", "half-pipe", "--drain", "nan"}, "--drain: 'nan' is no number"},
       {{"demo", "half-pipe", "--seconds", "nan"}, "--seconds: 'nan' is no number"},
       {{"sim", "--seed", "-1"}, "--seed: '-1' is"},
