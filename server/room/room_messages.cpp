@@ -106,9 +106,13 @@ void Room::on_input(PeerId id, Peer& peer, const protocol::Input& input) {
       inputs_.late_ticks = std::max(inputs_.late_ticks, static_cast<std::uint32_t>(late));
       return;
     }
-    case protocol::Timing::kEarly:
+    case protocol::Timing::kEarly: {
       ++statistics_.inputs_early;
+      const std::uint64_t early = input.tick - made - 1;
+      if (early >= 2 * protocol::kInputWindowTicks) return;  // Likewise.
+      hold.margin.on_input(static_cast<std::int32_t>(early), false);
       return;
+    }
     case protocol::Timing::kInTime:
       break;
   }

@@ -217,6 +217,22 @@ TEST_F(RoomInputs, AMissedInputIsToldAtOnceAndALateOneByHowMuch) {
   EXPECT_EQ(margins[0].merged, 0u);
 }
 
+TEST_F(RoomInputs, AnInputThatIsTooEarlyIsDroppedAndToldByHowMuch) {
+  open();
+  const PeerId id = enter(0);
+  say(id, protocol::Input{70, push(1)});
+  say(id, protocol::Input{protocol::kTickEnd - 1, push(1)});
+  run(6);
+  const auto margins = only<protocol::Margin>(hear(id));
+  ASSERT_EQ(margins.size(), 1u) << "the other is of another time";
+  EXPECT_EQ(margins[0].early_ticks, 69);
+  EXPECT_EQ(margins[0].merged, 0u);
+  EXPECT_EQ(margins[0].missed, 0u);
+  run(70);
+  EXPECT_EQ(seat_of(70).origin, Origin::kAbsent);
+  EXPECT_EQ(room_->statistics().inputs_early, 2u);
+}
+
 /// A client on the same machine sends when it sees a tick, with the lead that it is told.
 TEST_F(RoomInputs, AClientWithoutDelayMissesNothing) {
   open();
