@@ -20,7 +20,7 @@ static_assert(kInputDelayTicksMax < protocol::kInputWindowTicks);
 /// None may be 0 unless its comment says so.
 struct Limits {
   std::size_t connections_max = 1024;
-  /// Of one client; what is more waits for the next tick.
+  /// Of one client in a tick, or in 100 ms where a tick lasts longer; what is more waits.
   std::uint32_t messages_per_tick_max = 64;
   std::size_t queue_bytes_max = std::size_t{1} << 20;  ///< Of one client, states not counted.
   std::chrono::nanoseconds handshake{std::chrono::seconds{5}};  ///< From connection to hello.
@@ -32,7 +32,7 @@ struct Limits {
   std::uint32_t input_delay_ticks = 2;
 
   std::chrono::nanoseconds queue_age{std::chrono::seconds{2}};  ///< Of the oldest waiting frame.
-  std::uint32_t state_parts_per_tick_max = 8;                   ///< Of 16 KiB, to one client.
+  std::uint32_t state_parts_per_tick_max = 8;                   ///< Of 16 KiB, likewise.
   std::uint32_t state_restarts_max = 3;  ///< Of one transfer to a client that lags behind.
   std::uint32_t resyncs_max = 3;         ///< Of one client within `resync_window`.
   std::chrono::nanoseconds resync_window{std::chrono::minutes{5}};

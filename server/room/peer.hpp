@@ -45,9 +45,9 @@ struct Peer {
   std::int64_t connected_ns = 0;
   std::int64_t heard_ns = 0;  ///< When its last whole message came.
   protocol::Framer framer{protocol::kHelloBytesMax};
-  std::uint32_t messages = 0;  ///< Since the last tick.
+  std::uint32_t messages = 0;  ///< Since it was last served.
   Outbox outbox;
-  std::uint32_t parts_left;  ///< Of a state, until the next tick.
+  std::uint32_t parts_left;  ///< Of a state, until it is served again.
   RefillBucket messages_rate;
   RefillBucket bytes_rate;
   ActBudget desyncs;

@@ -77,7 +77,7 @@ struct RoomStatistics {
   std::uint64_t inputs_replaced = 0;  ///< Of seated players who had spoken before.
   std::uint64_t catch_up_ticks = 0;   ///< Made in one `advance` behind another.
   std::uint64_t encodes = 0;          ///< Of exact states and of snapshots, whoever got them.
-  std::uint64_t queue_bytes = 0;      ///< That wait for all peers, after the last tick.
+  std::uint64_t queue_bytes = 0;      ///< That wait for all peers, when last served.
   std::uint64_t slowed_ns = 0;
   std::uint64_t waited_ns = 0;  ///< For missing inputs.
   std::uint64_t worst_tick_ns = 0;
@@ -107,7 +107,8 @@ class Room {
   /// The connection is gone; the id means nothing from now on.
   void disconnect(PeerId id);
 
-  /// False while the peer has said more than one tick may hold: read nothing until the next.
+  /// False while the peer has said more than one tick may hold: read nothing until the next, or
+  /// until `advance` has served the peers without one.
   bool wants_bytes(PeerId id) const;
   bool has_output(PeerId id) const;
   /// All that waits for the peer and may leave in this tick, in order: one write. To be called when
@@ -118,7 +119,8 @@ class Room {
   /// Close the connection once its output is written.
   bool wants_close(PeerId id) const;
 
-  /// Makes the ticks that are due, a bounded number of them, and closes overdue peers.
+  /// Makes the ticks that are due, a bounded number of them, and closes overdue peers. Serves them
+  /// with each tick, and without one where none was made for 100 ms.
   void advance();
   /// When to call `advance` next.
   std::int64_t next_deadline_ns() const { return pacer_.next_ns(simulation_.tick() + 1); }
@@ -203,11 +205,12 @@ class Room {
   void break_inquiries(const std::string& why);
 
   // room_tick.cpp: what happens in a tick.
+  void make_due_ticks();
   bool waits_for_input(std::int64_t now_ns);
   void make_tick();
   protocol::InputFrame close_frame();
   protocol::SeatFrame close_seat(SeatHold& hold, std::uint64_t tick);
-  void after_tick();
+  void serve_peers();
   void keep(protocol::InputFrame frame);
   void enforce_slow_policy();
   void look_on_late(Peer& peer);

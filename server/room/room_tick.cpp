@@ -8,11 +8,13 @@ namespace cycloid::server {
 void Room::advance() {
   if (state_ != RoomState::kRunning) return;
   close_overdue();
+  if (!pacer_.paused()) make_due_ticks();
+  // In a pause, and where ticks are rare, clients are heard and served all the same.
+  if (state_ == RoomState::kRunning && pacer_.serves(hooks_.now_ns())) serve_peers();
+}
+
+void Room::make_due_ticks() {
   const std::int64_t begin = hooks_.now_ns();
-  if (pacer_.paused()) {
-    pacer_.poll_paused(begin);
-    return after_tick();  // Clients are heard and served all the same.
-  }
   for (std::uint32_t made = 0; state_ == RoomState::kRunning; ++made) {
     const std::int64_t now = hooks_.now_ns();
     const bool out_of_time = made > 0 && now - begin >= pacer_.tick_ns();
@@ -66,7 +68,7 @@ void Room::make_tick() {
 
   enforce_slow_policy();
   expire_seats();
-  after_tick();
+  serve_peers();
   check_log();
   if (state_ == RoomState::kRunning && simulation_.tick() == options_.ticks) {
     end(RoomState::kTicksDone, "all " + std::to_string(options_.ticks) + " ticks are made");
@@ -123,8 +125,10 @@ void Room::keep(protocol::InputFrame frame) {
   keyframes_.push(states_.of(simulation_, digest_), tick > delay ? tick - delay : 0);
 }
 
-/// What there was no time for in the tick before.
-void Room::after_tick() {
+/// What there was no room for before: each peer has anew what it may say and be given until the
+/// next time.
+void Room::serve_peers() {
+  pacer_.note_served(hooks_.now_ns());
   statistics_.queue_bytes = 0;
   for (auto& [id, peer] : peers_) {
     peer.messages = 0;

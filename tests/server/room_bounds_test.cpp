@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <map>
 
 #include "tests/server/room_fixture.hpp"
 
@@ -12,7 +13,17 @@ using protocol::Refusal;
 /// N on less than 1 kg: within a tick it is faster than a world may hold.
 constexpr float kFaultForce = 1e11f;
 
-class RoomBounds : public RoomTest {};
+class RoomBounds : public RoomTest {
+ protected:
+  void ping(PeerId id, std::uint64_t times) {
+    protocol::Bytes burst;
+    for (std::uint64_t token = 1; token <= times; ++token) {
+      const protocol::Bytes one = protocol::encode(protocol::ClientMessage(protocol::Ping{token}));
+      burst.insert(burst.end(), one.begin(), one.end());
+    }
+    room_->receive(id, burst);
+  }
+};
 
 TEST_F(RoomBounds, CatchingUpIsBoundedInTicksAndSkipsNone) {
   open();
@@ -78,12 +89,7 @@ TEST_F(RoomBounds, WhatIsMoreThanATickHoldsWaitsForTheNext) {
   const PeerId id = join(0);
   run(1);
   (void)hear(id);
-  protocol::Bytes burst;
-  for (std::uint64_t token = 1; token <= 10; ++token) {
-    const protocol::Bytes ping = protocol::encode(protocol::ClientMessage(protocol::Ping{token}));
-    burst.insert(burst.end(), ping.begin(), ping.end());
-  }
-  room_->receive(id, burst);
+  ping(id, 10);
   EXPECT_EQ(only<protocol::Pong>(hear(id)).size(), 4u);
   EXPECT_FALSE(room_->wants_bytes(id));
   run(1);
@@ -92,6 +98,56 @@ TEST_F(RoomBounds, WhatIsMoreThanATickHoldsWaitsForTheNext) {
   EXPECT_EQ(only<protocol::Pong>(hear(id)).size(), 2u);
   EXPECT_TRUE(room_->wants_bytes(id));
   EXPECT_FALSE(room_->wants_close(id));
+}
+
+class RareTicks : public RoomBounds {
+ protected:
+  /// A tick lasts 50 s.
+  void open_rare(Limits limits = {}) {
+    RoomOptions options;
+    options.limits = limits;
+    options.tick_rate_millihertz = 20;
+    open_with(options);
+  }
+};
+
+TEST_F(RareTicks, WhatIsMoreThanATickHoldsWaitsFor100Ms) {
+  Limits limits;
+  limits.messages_per_tick_max = 4;
+  open_rare(limits);
+  const PeerId id = enter(0);
+  run(1);
+  const std::int64_t begin = now_;
+  ping(id, 10);
+  EXPECT_EQ(only<protocol::Pong>(hear(id)).size(), 4u);
+  EXPECT_FALSE(room_->wants_bytes(id));
+  run(1);
+  EXPECT_EQ(only<protocol::Pong>(hear(id)).size(), 4u);
+  run(1);
+  EXPECT_EQ(only<protocol::Pong>(hear(id)).size(), 2u);
+  EXPECT_TRUE(room_->wants_bytes(id));
+  EXPECT_EQ(now_ - begin, 200'000'000);
+  EXPECT_EQ(room_->tick(), 0u);
+}
+
+TEST_F(RareTicks, DeadlinesHoldAllTheSame) {
+  open_rare();
+  const PeerId greets = room_->connect();
+  const PeerId silent = enter(0);
+  const PeerId lively = enter(1);
+  std::map<PeerId, std::int64_t> closed_ns;
+  for (const std::int64_t begin = now_; now_ - begin < 120'000'000'000;) {
+    ping(lively, 1);
+    run(5);
+    (void)hear(lively);
+    for (const PeerId id : {greets, silent, lively}) {
+      if (room_->wants_close(id)) closed_ns.try_emplace(id, now_ - begin);
+    }
+  }
+  EXPECT_EQ(room_->tick(), 2u);
+  ASSERT_EQ(closed_ns.size(), 2u);
+  EXPECT_NEAR(static_cast<double>(closed_ns[greets]), 5e9, 0.6e9);
+  EXPECT_NEAR(static_cast<double>(closed_ns[silent]), 30e9, 0.6e9);
 }
 
 TEST_F(RoomBounds, JoinsOfOneTickAreBoundedAndEveryLeaveHasRoom) {

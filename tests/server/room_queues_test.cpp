@@ -84,6 +84,26 @@ TEST_F(RoomQueues, BytesAreBoundedAsWellAsTime) {
   EXPECT_FALSE(room_->wants_close(id));
 }
 
+TEST_F(RoomQueues, AStateGoesOnWhereTicksAreRare) {
+  RoomOptions options;
+  options.tick_rate_millihertz = 1;
+  options.limits.state_parts_per_tick_max = 1;
+  open_with(options, crowded_scene());
+  const PeerId id = join(0);
+  Mirror mirror(scene_);
+  const std::int64_t begin = now_;
+  std::int64_t takes = 1;
+  for (mirror.take(hear(id)); mirror.states == 0 && takes < 100; ++takes) {
+    EXPECT_FALSE(room_->has_output(id)) << "its share is gone";
+    run(1);
+    mirror.take(hear(id));
+  }
+  EXPECT_EQ(mirror.states, 1u);
+  EXPECT_GT(takes, 3) << "or it proves nothing";
+  EXPECT_EQ(now_ - begin, (takes - 1) * 100'000'000);
+  EXPECT_EQ(room_->tick(), 0u);
+}
+
 /// No state is made or held for who does not read, and nothing else beyond the bound.
 TEST_F(RoomQueues, AHundredClientsThatNeverReadHoldNothing) {
   Limits limits;
