@@ -15,6 +15,10 @@
 namespace cycloid::server {
 namespace {
 
+/// The longest that a room waits for its phase. Its time stands until then, so that nobody in it is
+/// served in full; and a room whose ticks are rarer needs no even share of the raster.
+constexpr std::int64_t kStartWaitNsMax = 1'000'000'000;
+
 /// How often a room that makes no tick looks after its clients, its end, and who is left of it.
 constexpr std::int64_t kIdleLookNs = 100'000'000;
 constexpr std::int64_t kLastLookNs = 10'000'000;
@@ -97,7 +101,8 @@ void HostedRoom::start() {
 
 void HostedRoom::open_room() {
   const std::int64_t now_ns = process_now_ns();
-  start_ns_ = staggered_start_ns(site_.epoch_ns, now_ns, rate_millihertz_, slot_);
+  start_ns_ = std::min(staggered_start_ns(site_.epoch_ns, now_ns, rate_millihertz_, slot_),
+                       now_ns + kStartWaitNsMax);
   RoomOptions options;
   options.limits = settings_.limits;
   options.scene_digest = scenes::scene_digest(settings_.scene);

@@ -142,6 +142,26 @@ TEST(Loopback, DisturbedReplicaIsFoundOutAndGoesOnFromASnapshot) {
   EXPECT_EQ(mine.final_digest, report.final_digest);
 }
 
+/// A tick lasts 1000 s, and the state travels in more parts than one tick has.
+TEST(Loopback, ALargeStateComesWholeWhereTicksAreRare) {
+  server::ServeOptions serving;
+  serving.scene = std::move(*scenes::find("cubes-901").scene);
+  serving.tick_rate_millihertz = 1;
+  JoinOptions options = visit(0, protocol::Mode::kLockstep);
+  options.scene = serving.scene;
+  Served served(std::move(serving));
+  options.port = served.port();
+  std::atomic<bool> begun = false;
+  options.on_progress = [&begun](Follower& follower) { begun = follower.progress().begun(); };
+  options.should_stop = [&begun] { return begun.load(); };
+  const JoinReport report = join(options);
+  EXPECT_EQ(report.end, End::kStopped) << report.reason;
+  EXPECT_GT(report.bytes_in,
+            server::Limits().state_parts_per_tick_max * protocol::kSnapshotPartBytesMax)
+      << "or it proves nothing";
+  EXPECT_EQ(report.progress.last_tick, 0u);
+}
+
 TEST(Loopback, TakenSeatAndAnotherSceneAreRefusedWithTheirCodes) {
   server::ServeOptions serving;
   serving.scene = Authority::scene();
