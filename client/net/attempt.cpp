@@ -141,7 +141,8 @@ void Visit::Attempt::on_poll() {
   if (!open_) return;
   const auto now = Clock::now();
   if (!follower_->progress().begun() && now - opened_ > options_.handshake) {
-    return leave(End::kDisconnected, "no welcome in time");
+    return leave(End::kDisconnected,
+                 follower_->welcomed() ? "no state in time" : "no welcome in time");
   }
   if (now - pinged_ < kPingInterval) return;
   pinged_ = now;

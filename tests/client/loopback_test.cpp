@@ -13,6 +13,7 @@
 
 #include "client/join.hpp"
 #include "client/replica/replica.hpp"
+#include "protocol/codec.hpp"
 #include "protocol/log_format.hpp"
 #include "tests/client/authority.hpp"
 #include "tests/client/served.hpp"
@@ -204,6 +205,22 @@ TEST(Deadlines, SilentServerIsLeftInTime) {
   EXPECT_EQ(report.end, End::kDisconnected);
   EXPECT_EQ(report.reason, "no welcome in time");
   EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds(10));
+}
+
+TEST(Deadlines, AStateThatStaysAwayBehindItsWelcomeIsCalledThat) {
+  asio::io_context io;
+  asio::ip::tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
+  JoinOptions options = visit(acceptor.local_endpoint().port(), protocol::Mode::kLockstep);
+  options.handshake = std::chrono::milliseconds(1000);
+  auto client = std::async(std::launch::async, [&options] { return join(options); });
+  asio::ip::tcp::socket socket = acceptor.accept();
+  const Authority authority(options.scene);
+  const protocol::Bytes welcome = protocol::encode(authority.welcome(0));
+  asio::error_code error;
+  asio::write(socket, asio::buffer(welcome), error);
+  const JoinReport report = client.get();
+  EXPECT_EQ(report.end, End::kDisconnected);
+  EXPECT_EQ(report.reason, "no state in time");
 }
 
 TEST(Deadlines, NobodyThereIsADisconnect) {
