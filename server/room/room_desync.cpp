@@ -49,14 +49,14 @@ void Room::on_digest(PeerId id, Peer& peer, const protocol::Digest& digest) {
   if (peer.mode != protocol::Mode::kLockstep || digest.tick <= peer.exact_tick || loads) return;
   const MadeTick* made = frames_.find(digest.tick);
   if (made == nullptr) return;
-  if (peer.seat >= 0) prove_secret(peer);
   if (was_taken_back(digest.tick)) return;
   // Only what all replicas are asked for is a vote: others could crowd those out.
   const bool votes = digest.tick % options_.limits.digest_ticks == 0;
   if (votes && hooks_.inquiry != nullptr) {
     hooks_.inquiry->on_digest(id, digest.tick, digest.digest);
   }
-  if (made->digest != digest.digest) on_mismatch(id, peer, digest, made->digest);
+  if (made->digest != digest.digest) return on_mismatch(id, peer, digest, made->digest);
+  if (peer.seat >= 0) prove_secret(peer);
 }
 
 void Room::on_mismatch(PeerId id, Peer& peer, const protocol::Digest& digest, std::uint64_t ours) {

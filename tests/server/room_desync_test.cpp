@@ -94,6 +94,27 @@ TEST_F(RoomDesync, IsAnsweredWithTheExactStateAtOnce) {
   EXPECT_FALSE(room_->wants_close(good));
 }
 
+/// Anybody could make up such a digest: it does not show that the welcome has come.
+TEST_F(RoomDesync, EndsNoGraceOfTheResumeTokenBefore) {
+  resumable_ = true;
+  open();
+  const PeerId first = join(0);
+  const auto used = secret_of(first);
+  const auto say_digest = [&](PeerId id, std::uint64_t flip) {
+    (void)hear(id);
+    run(60);
+    (void)hear(id);
+    say(id, protocol::Digest{room_->tick(), room_->digest() ^ flip});
+  };
+  const PeerId second = come_back(used);
+  say_digest(second, 1);
+  EXPECT_EQ(room_->statistics().desyncs, 1u);
+  const PeerId third = come_back(used);
+  EXPECT_FALSE(room_->wants_close(third));
+  say_digest(third, 0);
+  EXPECT_EQ(refusal(come_back(used)).code, Refusal::kResumeUnknown);
+}
+
 TEST_F(RoomDesync, MoreThanThreeInFiveMinutesAreTheEnd) {
   open();
   const PeerId id = enter(0);

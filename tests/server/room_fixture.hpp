@@ -162,6 +162,20 @@ class RoomTest : public testing::Test {
     return id;
   }
 
+  /// The resume token in the welcome that the peer hears now.
+  std::vector<std::byte> secret_of(PeerId id) {
+    const auto welcomes = only<protocol::Welcome>(hear(id));
+    EXPECT_EQ(welcomes.size(), 1u);
+    return welcomes.empty() ? std::vector<std::byte>{} : welcomes[0].resume;
+  }
+  PeerId come_back(const std::vector<std::byte>& secret) {
+    const PeerId id = room_->connect();
+    protocol::Hello greeting = hello();
+    greeting.resume = secret;
+    say(id, greeting);
+    return id;
+  }
+
   /// Everything the room has for a peer, decoded.
   std::vector<protocol::ServerMessage> hear(PeerId id) {
     std::vector<protocol::ServerMessage> messages;

@@ -23,18 +23,6 @@ class RoomSeats : public RoomTest {
     limits.resume = std::chrono::seconds(1);
     return limits;
   }
-  std::vector<std::byte> secret_of(PeerId id) {
-    const auto welcomes = only<protocol::Welcome>(hear(id));
-    EXPECT_EQ(welcomes.size(), 1u);
-    return welcomes.empty() ? std::vector<std::byte>{} : welcomes[0].resume;
-  }
-  PeerId come_back(const std::vector<std::byte>& secret) {
-    const PeerId id = room_->connect();
-    protocol::Hello greeting = hello();
-    greeting.resume = secret;
-    say(id, greeting);
-    return id;
-  }
 };
 
 TEST_F(RoomSeats, AReservedSeatIsFreeToTheTick) {
