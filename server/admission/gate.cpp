@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "server/room/wrong_size.hpp"
+
 namespace cycloid::server {
 namespace {
 
@@ -116,9 +118,8 @@ GateResult Gate::feed(GateId id, std::span<const std::byte> bytes, const GateTim
   feed_first(framer, bytes);
   const auto payload = framer.next();
   if (framer.broken()) {
-    return refuse_open(id, Refusal::kTooLarge,
-                       "a message of " + std::to_string(framer.announced_bytes()) +
-                           " bytes, of 1 to " + std::to_string(protocol::kHelloBytesMax));
+    const auto [code, reason] = wrong_size(framer.announced_bytes(), protocol::kHelloBytesMax);
+    return refuse_open(id, code, reason);
   }
   if (!payload) return GateWaiting{};
   const auto decoded = protocol::decode_client(*payload);

@@ -3,6 +3,7 @@
 
 #include "protocol/overloaded.hpp"
 #include "server/room/room.hpp"
+#include "server/room/wrong_size.hpp"
 
 namespace cycloid::server {
 void Room::receive(PeerId id, std::span<const std::byte> bytes) {
@@ -31,10 +32,10 @@ void Room::process(PeerId id, Peer& peer) {
   }
   if (peer.stage == PeerStage::kClosing || !peer.framer.broken()) return;
   const bool greets = peer.stage == PeerStage::kGreeting;
-  const std::uint32_t most = greets ? protocol::kHelloBytesMax : protocol::kClientMessageBytesMax;
-  const std::uint32_t announced = peer.framer.announced_bytes();
-  refuse(id, peer, announced == 0 ? protocol::Refusal::kBadMessage : protocol::Refusal::kTooLarge,
-         "a message of " + std::to_string(announced) + " bytes, of 1 to " + std::to_string(most));
+  const auto [code, reason] =
+      wrong_size(peer.framer.announced_bytes(),
+                 greets ? protocol::kHelloBytesMax : protocol::kClientMessageBytesMax);
+  refuse(id, peer, code, reason);
 }
 
 bool Room::within_rates(PeerId id, Peer& peer, std::size_t bytes,

@@ -89,7 +89,7 @@ TEST(Gate, RefusesWhatIsNoHello) {
   ASSERT_TRUE(std::holds_alternative<GateRefused>(garbage));
   EXPECT_EQ(std::get<GateRefused>(garbage).code, Refusal::kBadMessage);
   expect_refused(feed({1, 4, 0, 0}), Refusal::kTooLarge, "a message of 1025 bytes, of 1 to 1024");
-  expect_refused(feed({0, 0, 0, 0}), Refusal::kTooLarge, "a message of 0 bytes, of 1 to 1024");
+  expect_refused(feed({0, 0, 0, 0}), Refusal::kBadMessage, "a message of 0 bytes, of 1 to 1024");
   const GateId id = fixture.begin();
   const protocol::Bytes ping = protocol::encode(protocol::ClientMessage(protocol::Ping{7}));
   expect_refused(fixture.gate.feed(id, ping, fixture.now), Refusal::kBadMessage,
