@@ -22,6 +22,11 @@ class InputWindow {
     return words;
   }
 
+  /// What was said stands, and who goes on from here has said none of it yet.
+  void count_anew() {
+    for (Said& said : said_) said.words = 0;
+  }
+
   bool has(std::uint64_t tick) const { return said_[slot(tick)].tick == tick; }
   /// Ticks that were to be made before `tick` when its input came; nothing where none came.
   std::optional<std::uint32_t> early_ticks(std::uint64_t tick) const {

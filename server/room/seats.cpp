@@ -77,6 +77,7 @@ void SeatTable::resume(std::size_t seat, PeerId holder) {
   hold.state = SeatState::kHeld;
   hold.holder = holder;
   hold.missed = 0;
+  hold.window.count_anew();
   hold.margin = {};
 }
 

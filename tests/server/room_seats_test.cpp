@@ -295,6 +295,22 @@ TEST_F(RoomSeats, TheOldConnectionOfAResumedSeatIsFenced) {
   EXPECT_EQ(log_.ticks[2].frame.seats[0].input, push(33)) << "said in time, before";
 }
 
+TEST_F(RoomSeats, WhoCameBackMaySayItsInputsAnew) {
+  Limits limits = one_second_to_resume();
+  limits.words_per_input_max = 2;
+  open(limits);
+  const PeerId first = join(0);
+  const auto secret = secret_of(first);
+  for (const int word : {1, 2}) say(first, protocol::Input{5, push(word)});
+  room_->disconnect(first);
+  const PeerId second = come_back(secret);
+  (void)hear(second);
+  for (const int word : {3, 4}) say(second, protocol::Input{5, push(word)});
+  EXPECT_FALSE(room_->wants_close(second));
+  say(second, protocol::Input{5, push(5)});
+  EXPECT_EQ(refusal(second).reason, "3 inputs for tick 5, of at most 2");
+}
+
 TEST_F(RoomSeats, WhoCameBackWithItsStateIsSentTheFramesSince) {
   open(one_second_to_resume());
   const PeerId first = join(0);
