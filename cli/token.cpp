@@ -8,6 +8,7 @@
 #include <chrono>
 #include <cstring>
 #include <iostream>
+#include <limits>
 #include <memory>
 
 #include "cli/commands.hpp"
@@ -23,6 +24,10 @@ using server::SigningKey;
 
 const std::vector<std::pair<std::string, Role>> kRoles = {
     {"player", Role::kPlayer}, {"spectator", Role::kSpectator}, {"admin", Role::kAdmin}};
+
+/// So that a lifetime fits behind it.
+constexpr std::int64_t kNotBeforeMax_unix_s =
+    std::numeric_limits<std::int64_t>::max() - server::kTokenLifetimeMax_s;
 
 std::string role_name(Role role) {
   for (const auto& [name, each] : kRoles) {
@@ -193,10 +198,10 @@ void add_make(CLI::App& token, Action& action) {
   make->add_option("--identity", wish->token.identity, "Who it is, for logs; at most 64 bytes");
   make->add_option("--lifetime", wish->lifetime_s, "Seconds that it is good for")
       ->capture_default_str()
-      ->check(CLI::PositiveNumber);
+      ->check(CLI::Range(std::int64_t{1}, server::kTokenLifetimeMax_s));
   make->add_option("--not-before", wish->token.not_before_unix_s,
                    "Unix seconds from which it is good [now]")
-      ->check(CLI::NonNegativeNumber);
+      ->check(CLI::Range(std::int64_t{0}, kNotBeforeMax_unix_s));
   make->callback(
       [wish, &action] { action.run = [=, &action] { return make_token(*wish, action.json); }; });
 }

@@ -178,7 +178,8 @@ std::variant<AdmissionToken, TokenFault> TokenVerifier::verify(std::span<const s
   const auto* token = std::get_if<AdmissionToken>(&fields);
   if (token == nullptr) return fields;
   const std::string here = ", the clock here says " + std::to_string(now_unix_s);
-  if (now_unix_s > token->expires_unix_s + leeway_s_) {
+  // Of a token that is valid so far no field is below 0, so that neither difference overflows.
+  if (now_unix_s - leeway_s_ > token->expires_unix_s) {
     return TokenFault{protocol::Refusal::kTokenExpired,
                       "the token expired at " + std::to_string(token->expires_unix_s) + here};
   }

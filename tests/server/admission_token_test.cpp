@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <functional>
+#include <limits>
 
 #include "server/admission/nonces.hpp"
 #include "tests/server/admission_fixture.hpp"
@@ -98,6 +99,16 @@ TEST(AdmissionToken, IsGoodFromItsFirstSecondToItsLastWithTheLeeway) {
   EXPECT_EQ(fault_of(at(first_s - 1)).code, Refusal::kTokenExpired);
   EXPECT_EQ(fault_of(at(first_s - 1)).reason,
             "the token is good from 1799999990, the clock here says 1799999959");
+}
+
+TEST(AdmissionToken, OfTheEndOfTimeIsNotTakenForAnOldOne) {
+  AdmissionToken token = arena_token();
+  token.expires_unix_s = std::numeric_limits<std::int64_t>::max();
+  token.not_before_unix_s = token.expires_unix_s - 60;
+  const auto bytes = sign_token(token, issuer_key());
+  const TokenFault fault = fault_of(arena_verifier().verify(bytes, kNowUnix_s));
+  EXPECT_EQ(fault.code, Refusal::kTokenExpired);
+  EXPECT_THAT(fault.reason, HasSubstr("the token is good from 9223372036854775747"));
 }
 
 TEST(AdmissionToken, WithAFieldOutOfBoundsIsInvalidAndTheFieldIsNamed) {
