@@ -7,6 +7,7 @@
 #include <memory>
 
 #include "cli/commands.hpp"
+#include "cli/files.hpp"
 #include "cli/output.hpp"
 #include "cli/visible.hpp"
 #include "server/config/run.hpp"
@@ -65,6 +66,11 @@ std::string host_text(const std::string& address) {
 scenes::Loaded load_for_config(const std::string& name) {
   try {
     scenes::Loaded loaded;
+    // Such as a pipe, which may never end.
+    if (const PathKind kind = kind_of(name); kind.exists && !kind.is_file) {
+      loaded.mistakes.push_back({"", "it is no regular file"});
+      return loaded;
+    }
     loaded.scene = load_scene(name);
     return loaded;
   } catch (const Failure& failure) {
@@ -100,7 +106,8 @@ Exit serve_config(const ServeCommand& command, bool json) {
   }
   server::ConfigResult read = server::read_config_file(command.config, load_for_config);
   if (!read.config) {
-    (void)read_file(command.config);  // Says so where it cannot be read.
+    const PathKind kind = kind_of(command.config);
+    if (!kind.exists || kind.is_file) (void)read_file(command.config);  // Says why it cannot be.
     throw Failure(kExitUsage, server::config_mistakes_text(command.config, read.mistakes));
   }
   if (command.check_config) {

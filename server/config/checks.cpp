@@ -3,9 +3,12 @@
 #include <algorithm>
 #include <asio/ip/address.hpp>
 #include <filesystem>
-#include <fstream>
 #include <set>
+#include <sstream>
 #include <utility>
+
+#include "scenes/simulation.hpp"
+#include "server/operation/text_file.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -75,7 +78,9 @@ void check_tokens(ServerConfig& config, const Complain& complain) {
     if (needed) complain(key, "it is missing: without keys no token is good");
     return;
   }
-  std::ifstream stream(file);
+  const auto text = read_text_file(file);
+  if (!text) return complain(key, file + ": cannot be read");
+  std::istringstream stream(*text);
   std::string line;
   bool mistaken = false;
   for (int number = 1; std::getline(stream, line); ++number) {
@@ -88,8 +93,7 @@ void check_tokens(ServerConfig& config, const Complain& complain) {
                         ": it is no public key: \"ed25519-public:\" and 64 hexadecimal digits");
     }
   }
-  if (!stream.eof()) complain(key, file + ": cannot be read");
-  const bool none = stream.eof() && !mistaken && config.host.gate.keys.empty();
+  const bool none = !mistaken && config.host.gate.keys.empty();
   if (none) complain(key, file + ": there is no key in it");
 }
 
@@ -100,8 +104,8 @@ void check_tls(ServerConfig& config, const Complain& complain) {
   if (config.tls_files.certificate_chain.empty() || config.tls_files.private_key.empty()) return;
   try {
     config.host.tls = std::make_shared<ServerTls>(config.tls_files);
-  } catch (const std::runtime_error& error) {
-    complain("tls.certificate_file", error.what());
+  } catch (const TlsFileError& error) {
+    complain(error.of_key ? "tls.key_file" : "tls.certificate_file", error.what());
   }
 }
 

@@ -46,7 +46,7 @@ class Reloader {
     // The files were read without a mistake just now; they may still have gone since.
     const auto& tls = server_.config.host.tls;
     if (std::string why = tls == nullptr ? "" : tls->reload(); !why.empty()) {
-      return {kMistaken, "tls.certificate_file: " + why};
+      return {kMistaken, "tls: " + why};
     }
     if (tls != nullptr) {
       host.logger()->info("certificate {} until Unix second {}", tls->fingerprint(),

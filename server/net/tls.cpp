@@ -6,12 +6,11 @@
 
 #include <array>
 #include <ctime>
-#include <fstream>
-#include <stdexcept>
 #include <utility>
 
 #include "protocol/codec.hpp"
 #include "protocol/transport/fingerprint.hpp"
+#include "server/operation/text_file.hpp"
 
 namespace cycloid::server {
 namespace {
@@ -27,13 +26,12 @@ constexpr const char* kCiphersOfTls12 = "ECDHE+AESGCM:ECDHE+CHACHA20";
 constexpr unsigned char kHandshakeRecord = 0x16;
 constexpr const char* kTlsRequired = "this server speaks TLS only";
 
-[[noreturn]] void fail(const std::string& file, const std::string& why) {
-  throw std::runtime_error(file + ": " + why);
+[[noreturn]] void fail_of_chain(const TlsFiles& files, const std::string& why) {
+  throw TlsFileError(false, files.certificate_chain + ": " + why);
 }
 
-void check_readable(const std::string& file) {
-  std::ifstream stream(file, std::ios::binary);
-  if (!stream || stream.peek() == std::ifstream::traits_type::eof()) fail(file, "cannot be read");
+[[noreturn]] void fail_of_key(const TlsFiles& files, const std::string& why) {
+  throw TlsFileError(true, files.private_key + ": " + why);
 }
 
 std::int64_t expiry_of(SSL_CTX* context) {
@@ -75,22 +73,24 @@ asio::awaitable<bool> begins_in_plaintext(Stream& stream, asio::error_code& erro
 ServerTls::ServerTls(TlsFiles files) : files_(std::move(files)), loaded_(load(files_)) {}
 
 ServerTls::Loaded ServerTls::load(const TlsFiles& files) {
-  check_readable(files.certificate_chain);
-  check_readable(files.private_key);
+  const auto chain = read_text_file(files.certificate_chain);
+  if (!chain || chain->empty()) fail_of_chain(files, "cannot be read");
+  const auto key = read_text_file(files.private_key);
+  if (!key || key->empty()) fail_of_key(files, "cannot be read");
   auto context = std::make_shared<asio::ssl::context>(asio::ssl::context::tls_server);
   harden(*context);
   asio::error_code error;
   // A key behind a password would ask for it at the terminal, where nobody sits.
   context->set_password_callback([](std::size_t, auto) { return std::string(); }, error);
-  context->use_certificate_chain_file(files.certificate_chain, error);
-  if (error) fail(files.certificate_chain, "is no certificate chain in PEM: " + error.message());
-  context->use_private_key_file(files.private_key, asio::ssl::context::pem, error);
+  context->use_certificate_chain(asio::buffer(*chain), error);
+  if (error) fail_of_chain(files, "is no certificate chain in PEM: " + error.message());
+  context->use_private_key(asio::buffer(*key), asio::ssl::context::pem, error);
   if (error) {
-    fail(files.private_key, "is no private key in PEM, without a password, of the certificate in " +
-                                files.certificate_chain + ": " + error.message());
+    fail_of_key(files, "is no private key in PEM, without a password, of the certificate in " +
+                           files.certificate_chain + ": " + error.message());
   }
   if (SSL_CTX_check_private_key(context->native_handle()) != 1)
-    fail(files.private_key, "is not the key of the certificate in " + files.certificate_chain);
+    fail_of_key(files, "is not the key of the certificate in " + files.certificate_chain);
   SSL_CTX* const handle = context->native_handle();
   const auto fingerprint = transport::fingerprint_of(SSL_CTX_get0_certificate(handle));
   return {context, expiry_of(handle), transport::fingerprint_text(fingerprint)};

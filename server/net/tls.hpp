@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <memory>
 #include <mutex>
+#include <stdexcept>
 #include <string>
 #include <vector>
 
@@ -18,12 +19,19 @@ struct TlsFiles {
   std::string private_key;
 };
 
+/// Names the file and what is wrong with it.
+struct TlsFileError : std::runtime_error {
+  TlsFileError(bool of_the_key, const std::string& what)
+      : std::runtime_error(what), of_key(of_the_key) {}
+  bool of_key;  ///< Else of the certificate chain.
+};
+
 /// The server's certificate. There is no "if the client likes": whoever sits between the two could
 /// then make both like none. TLS 1.2 and later, ciphers with forward secrecy only, no compression,
 /// no renegotiation, no resumption. May be used from several threads.
 class ServerTls {
  public:
-  /// @throws std::runtime_error that names the file and what is wrong with it.
+  /// @throws TlsFileError
   explicit ServerTls(TlsFiles files);
 
   /// Reads the files again: "" and connections from now on get what is in them, or why not, and

@@ -150,6 +150,22 @@ TEST(ServeArguments, ATickRateThatWouldRoundToTheScenesIsUsage) {
   EXPECT_THAT(ran.err, HasSubstr("--tick-rate"));
 }
 
+/// Pipes into which nobody writes: whoever opens one to read it waits for ever.
+TEST(ServeArguments, APipeInThePlaceOfAFileIsNotWaitedFor) {
+  const Folder folder;
+  const std::string pipe = folder.file("pipe");
+  ASSERT_EQ(::mkfifo(pipe.c_str(), 0600), 0);
+  const Ran itself = run_program({"serve", "--config", pipe, "--check-config"});
+  EXPECT_EQ(itself.exit, 2);
+  EXPECT_THAT(itself.err, HasSubstr(pipe + ": the file cannot be read"));
+  write_text(folder.file("a.toml"),
+             "[template.a]\nscene = \"" + pipe + "\"\n[[room]]\nname = \"a\"\ntemplate = \"a\"\n");
+  const Ran scene = run_program({"serve", "--config", folder.file("a.toml"), "--check-config"});
+  EXPECT_EQ(scene.exit, 2);
+  EXPECT_THAT(scene.err, HasSubstr("a.toml:2: template.a.scene: "));
+  EXPECT_THAT(scene.err, HasSubstr("it is no regular file"));
+}
+
 TEST(ServePipe, ThatNobodyReadsEndsNoMatch) {
   const Folder folder;
   const std::string command = "{ '" + places::program() +

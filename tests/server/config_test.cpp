@@ -135,6 +135,10 @@ TEST(Config, AFileWithoutAnEndIsNotReadToIt) {
   std::string mistake;
   EXPECT_EQ(read_admin_token("/dev/zero", mistake), "");
   EXPECT_EQ(mistake, "/dev/zero: cannot be read");
+  const ConfigResult read = read_config(
+      std::string("[admission]\nkeys_file = \"/dev/zero\"\n") + kConfigRooms, load_for_test);
+  EXPECT_EQ(config_mistakes_text("f", read.mistakes),
+            "f:2: admission.keys_file: /dev/zero: cannot be read");
 }
 
 TEST(Config, ANameThatNoFolderCanHaveIsNoReasonToEnd) {
