@@ -10,7 +10,7 @@
 namespace cycloid::server {
 namespace {
 
-constexpr int kFixed = 409;
+constexpr int kNotNow = 409;
 constexpr int kMistaken = 422;
 
 /// Reads the configuration again, and takes what may be taken from it: all or nothing.
@@ -20,19 +20,24 @@ class Reloader {
 
   /// Any thread. The host must be there when it is called.
   ActResult reload(Host& host) {
-    const std::lock_guard lock(mutex_);
-    ActResult result;
-    try {
-      result = take(host);
-    } catch (const std::exception& error) {  // A mistake in a file ends no match.
-      result = {kMistaken, error.what()};
-    }
+    const ActResult result = try_to_take(host);
     if (result.ok()) host.logger()->info("reloaded {}", server_.file);
     if (!result.ok()) host.logger()->error("not reloaded, nothing is changed: {}", result.text);
     return result;
   }
 
  private:
+  ActResult try_to_take(Host& host) {
+    const std::unique_lock lock(mutex_, std::try_to_lock);
+    // Not waited for: files that do not answer would take one thread beside the pool after another.
+    if (!lock) return {kNotNow, "a reload is under way"};
+    try {
+      return take(host);
+    } catch (const std::exception& error) {  // A mistake in a file ends no match.
+      return {kMistaken, error.what()};
+    }
+  }
+
   ActResult take(Host& host) {
     ConfigResult read = read_config_file(server_.file, server_.load_scene);
     if (!read.config) return {kMistaken, config_mistakes_text(server_.file, read.mistakes)};
@@ -41,7 +46,7 @@ class Reloader {
     for (const std::string& key : fixed_differences(server_.config, wanted)) {
       keys += (keys.empty() ? "" : ", ") + key;
     }
-    if (!keys.empty()) return {kFixed, "these cannot change while the server runs: " + keys};
+    if (!keys.empty()) return {kNotNow, "these cannot change while the server runs: " + keys};
     if (server_.override_config) server_.override_config(wanted);
     // The files were read without a mistake just now; they may still have gone since.
     const auto& tls = server_.config.host.tls;

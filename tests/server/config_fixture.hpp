@@ -7,6 +7,7 @@
 #include <fstream>
 #include <future>
 #include <string>
+#include <utility>
 
 #include "server/config/run.hpp"
 #include "tests/server/host_fixture.hpp"
@@ -47,11 +48,12 @@ class ConfigFile {
 /// A configured server that runs beside the test.
 class Configured {
  public:
-  explicit Configured(const ConfigFile& file) {
+  /// @param load_again  Of a reload.
+  explicit Configured(const ConfigFile& file, SceneLoader load_again = load_for_test) {
     ConfiguredServer server;
     server.config = *read_config_file(file.path(), load_for_test).config;
     server.file = file.path();
-    server.load_scene = load_for_test;
+    server.load_scene = std::move(load_again);
     server.config.host.logger = lines_.logger();
     std::promise<ListeningAt> at;
     auto listening = at.get_future();

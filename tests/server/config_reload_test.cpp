@@ -1,6 +1,8 @@
 #include <gtest/gtest.h>
 
+#include <atomic>
 #include <csignal>
+#include <future>
 
 #include "tests/server/config_fixture.hpp"
 #include "tests/server/http_fixture.hpp"
@@ -93,7 +95,11 @@ TEST_F(ConfigReloadTest, AFolderInThePlaceOfTheFileEndsNoMatch) {
   std::filesystem::remove(file_.path());
   std::filesystem::create_directory(file_.path());
   ASSERT_EQ(::kill(::getpid(), SIGHUP), 0);
-  const Answer answer = reload();
+  Answer answer;
+  EXPECT_TRUE(eventually([&] {  // While the signal's is under way the admin's is refused.
+    answer = reload();
+    return answer.status != 409;
+  }));
   EXPECT_EQ(answer.status, 422);
   EXPECT_NE(answer.body.find("cannot be read"), std::string::npos) << answer.body;
   for (int i = 0; i < 30; ++i) ASSERT_TRUE(peer->wait_for<protocol::InputFrame>());
@@ -129,6 +135,31 @@ TEST_F(ConfigReloadTest, ADrainLastsAsLongAsTheFileSaysNow) {
   const auto notice = peer->wait_for<protocol::RoomNotice>();
   ASSERT_TRUE(notice);
   EXPECT_EQ(notice->value, 70'000u);
+}
+
+/// Such as of a disk that does not answer: neither the matches nor another reload wait for it.
+TEST(ConfiguredServer, WhoseFilesDoNotAnswerRefusesTheNextReload) {
+  const ConfigFile file("reload-hangs");
+  const ConfigFile token("reload-hangs-token");
+  token.write(std::string(kAdminToken) + "\n");
+  file.write(kPorts + "[admin]\ntoken_file = \"" + token.path() + "\"\n" + kConfigRooms);
+  std::promise<void> answers;
+  std::atomic<bool> asked{false};
+  Configured server(file, [&, answered = answers.get_future().share()](const std::string& name) {
+    if (asked.exchange(true)) return load_for_test(name);
+    answered.wait();
+    return load_for_test(name);
+  });
+  const auto reload = [&] { return http(server.at().operation_port, "POST", "/admin/reload"); };
+  auto first = std::async(std::launch::async, reload);
+  EXPECT_TRUE(eventually([&] { return asked.load(); }));
+  const Answer second = reload();
+  EXPECT_EQ(second.status, 409);
+  EXPECT_NE(second.body.find("a reload is under way"), std::string::npos) << second.body;
+  answers.set_value();
+  EXPECT_EQ(first.get().status, 200);
+  EXPECT_EQ(reload().status, 200);
+  EXPECT_TRUE(server.stop().good);
 }
 
 TEST(ConfiguredServer, ThatCannotHaveItsOperationPortBeginsNoLog) {
