@@ -28,6 +28,13 @@ PeerAddress address_of(const asio::ip::address& address) {
   return PeerAddress::v6(address.to_v6().to_bytes());
 }
 
+/// No address where the peer has gone already.
+PeerAddress address_of(const asio::ip::tcp::socket& socket) {
+  asio::error_code error;
+  const auto peer = socket.remote_endpoint(error);
+  return error ? PeerAddress() : address_of(peer.address());
+}
+
 GateTime gate_time() {
   const auto since_epoch = std::chrono::system_clock::now().time_since_epoch();
   return {process_now_ns(), std::chrono::duration_cast<std::chrono::seconds>(since_epoch).count()};
@@ -76,8 +83,8 @@ void Gatehouse::receive(asio::ip::tcp::socket socket) {
   caller->address = address_of(peer.address());
   const auto begun = gate_.begin(caller->address, process_now_ns());
   if (const auto* refused = std::get_if<GateRefused>(&begun)) {
-    note(*caller, *refused);
-    return turn_away_now(socket, {refused->code, refused->reason});
+    note(caller->address, refused->code, refused->reason);
+    return say_and_close(socket, {refused->code, refused->reason});
   }
   const GateId id = std::get<GateId>(begun);
   caller->count = counted(id);
@@ -104,8 +111,8 @@ asio::awaitable<void> Gatehouse::receive_tls(GateId id, CallerPtr caller) {
   if (shaken.end == Handshake::End::kPlaintext) {
     lose(id);
     const protocol::Refused refused{protocol::Refusal::kBadMessage, shaken.reason};
-    note(*caller, encoded_refusal(refused));
-    turn_away_now(caller->stream->socket(), refused);
+    note(caller->address, refused.code, refused.reason);
+    say_and_close(caller->stream->socket(), refused);
     co_return;
   }
   if (shaken.end != Handshake::End::kDone) {
@@ -156,7 +163,7 @@ bool Gatehouse::hear(GateId id, const CallerPtr& caller, std::span<const std::by
   if (std::holds_alternative<GateWaiting>(result)) return true;
   lose(id);
   if (auto* refused = std::get_if<GateRefused>(&result)) {
-    note(*caller, *refused);
+    note(caller->address, refused->code, refused->reason);
     see_off(caller, std::move(*refused));
     return false;
   }
@@ -166,12 +173,12 @@ bool Gatehouse::hear(GateId id, const CallerPtr& caller, std::span<const std::by
   return false;
 }
 
-void Gatehouse::note(const Caller& caller, const GateRefused& refused) {
-  meters_->refusals[static_cast<std::size_t>(refused.code)].add();
-  const RefusalLog::Line line = refusal_log_.note(refused.code, caller.address, process_now_ns());
+void Gatehouse::note(const PeerAddress& address, protocol::Refusal code,
+                     const std::string& reason) {
+  meters_->refusals[static_cast<std::size_t>(code)].add();
+  const RefusalLog::Line line = refusal_log_.note(code, address, process_now_ns());
   if (!line.write) return;
-  options_.logger->warn(
-      refusal_line(refused.code, refused.reason, caller.address, line.suppressed));
+  options_.logger->warn(refusal_line(code, reason, address, line.suppressed));
 }
 
 void Gatehouse::turn_away(Entrant entrant, const protocol::Refused& refused) {
@@ -179,15 +186,18 @@ void Gatehouse::turn_away(Entrant entrant, const protocol::Refused& refused) {
   const auto caller = std::make_shared<Caller>();
   caller->stream = std::move(entrant.stream);
   caller->count = std::move(entrant.count);
-  asio::error_code error;
-  const auto peer = caller->stream->socket().remote_endpoint(error);
-  if (!error) caller->address = address_of(peer.address());
+  caller->address = address_of(caller->stream->socket());
   GateRefused word = encoded_refusal(refused);
-  note(*caller, word);
+  note(caller->address, refused.code, refused.reason);
   see_off(caller, std::move(word));
 }
 
 void Gatehouse::turn_away_now(asio::ip::tcp::socket& socket, const protocol::Refused& refused) {
+  note(address_of(socket), refused.code, refused.reason);
+  say_and_close(socket, refused);
+}
+
+void Gatehouse::say_and_close(asio::ip::tcp::socket& socket, const protocol::Refused& refused) {
   asio::error_code ignored;  // Whoever cannot be told is not told.
   socket.non_blocking(true, ignored);
   // What lies unread when a socket closes would reset the connection, and our word with it.
@@ -247,7 +257,7 @@ void Gatehouse::sweep() {
       if (found == waiting_.end()) continue;
       const CallerPtr caller = found->second;
       lose(overdue.id);
-      note(*caller, overdue.refused);
+      note(caller->address, overdue.refused.code, overdue.refused.reason);
       if (caller->can_be_told) {
         see_off(caller, std::move(overdue.refused));
       } else {

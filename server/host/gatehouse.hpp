@@ -49,7 +49,7 @@ class Gatehouse {
   /// One word, then the connection is closed as soon as the peer has had time to read it. It was in
   /// no room: its token is good once more.
   void turn_away(Entrant entrant, const protocol::Refused& refused);
-  /// The same at once, for want of a descriptor.
+  /// The same at once, for want of a descriptor, of one who has come to no door.
   void turn_away_now(asio::ip::tcp::socket& socket, const protocol::Refused& refused);
   /// From now on newcomers are refused with kDraining.
   void drain(const std::string& reason) { gate_.drain(reason); }
@@ -82,7 +82,10 @@ class Gatehouse {
   void see_off(const CallerPtr& caller, GateRefused refused);
   void say_no_more(std::uint64_t leaver, const CallerPtr& caller);
   void wait_for_end(std::uint64_t leaver, const CallerPtr& caller);
-  void note(const Caller& caller, const GateRefused& refused);
+  /// Counts it, and writes a line of the log where one is due.
+  void note(const PeerAddress& address, protocol::Refusal code, const std::string& reason);
+  /// What the peer is told is all that happens to it.
+  void say_and_close(asio::ip::tcp::socket& socket, const protocol::Refused& refused);
   void sweep();
   void forget_closed();
   std::shared_ptr<void> counted(GateId id);

@@ -308,22 +308,50 @@ TEST(Serve, APeerThatReadsNothingIsClosed) {
   EXPECT_TRUE(left);
 }
 
+/// While it lives this process can open nothing more.
+class NoMoreDescriptors {
+ public:
+  NoMoreDescriptors() {
+    EXPECT_EQ(::getrlimit(RLIMIT_NOFILE, &before_), 0);
+    const int next = ::dup(0);
+    EXPECT_GE(next, 0);
+    (void)::close(next);
+    rlimit none = before_;
+    none.rlim_cur = static_cast<rlim_t>(next);
+    EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
+  }
+  NoMoreDescriptors(const NoMoreDescriptors&) = delete;
+  NoMoreDescriptors& operator=(const NoMoreDescriptors&) = delete;
+  ~NoMoreDescriptors() { EXPECT_EQ(::setrlimit(RLIMIT_NOFILE, &before_), 0); }
+
+ private:
+  rlimit before_{};
+};
+
 TEST(Serve, WithoutDescriptorsItWaitsAndGoesOn) {
   Served server(quiet_options());
   Peer peer;  // Its descriptor is open before there are none left.
-  rlimit before{};
-  ASSERT_EQ(::getrlimit(RLIMIT_NOFILE, &before), 0);
-  const int next = ::dup(0);
-  ASSERT_GE(next, 0);
-  (void)::close(next);
-  rlimit none = before;
-  none.rlim_cur = static_cast<rlim_t>(next);
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &none), 0);
-  peer.connect(server.port());
-  peer.send(greeting());
-  std::this_thread::sleep_for(250ms);
-  ASSERT_EQ(::setrlimit(RLIMIT_NOFILE, &before), 0);
+  {
+    const NoMoreDescriptors none;
+    peer.connect(server.port());
+    peer.send(greeting());
+    std::this_thread::sleep_for(250ms);
+  }
   EXPECT_TRUE(peer.wait_for<protocol::Welcome>());
+}
+
+TEST(Serve, WithoutDescriptorsForASecondItTurnsAwayAndCountsThem) {
+  Served server(quiet_options());
+  Peer peer;
+  {
+    const NoMoreDescriptors none;
+    peer.connect(server.port());
+    const auto refused = peer.wait_for<protocol::Refused>();
+    ASSERT_TRUE(refused);
+    EXPECT_EQ(refused->code, protocol::Refusal::kRoomFull);
+  }
+  server.stop();
+  EXPECT_EQ(server.report().refusals, 1u);
 }
 
 TEST(Serve, SigtermDrains) {
