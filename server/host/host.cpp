@@ -1,23 +1,15 @@
 #include "server/host/host.hpp"
 
-#include <spdlog/sinks/stdout_sinks.h>
+#include <unistd.h>
 
 #include <csignal>
 #include <utility>
 
+#include "server/host/patient_log.hpp"
 #include "server/host/process_time.hpp"
 #include "server/host/realtime.hpp"
 
 namespace cycloid::server {
-namespace {
-
-/// One line for each event that matters, on stderr: stdout belongs to the program's report.
-std::shared_ptr<spdlog::logger> stderr_logger() {
-  return std::make_shared<spdlog::logger>("cycloid",
-                                          std::make_shared<spdlog::sinks::stderr_sink_mt>());
-}
-
-}  // namespace
 
 Host::Host(HostOptions options)
     : options_(std::move(options)),
@@ -29,7 +21,8 @@ Host::Host(HostOptions options)
       limits_(options_.limits) {
   // Lines that nobody reads any more end no match.
   if (options_.catch_signals) std::signal(SIGPIPE, SIG_IGN);
-  if (options_.logger == nullptr) options_.logger = stderr_logger();
+  // One line for each event that matters, on stderr: stdout belongs to the program's report.
+  if (options_.logger == nullptr) options_.logger = log_to(STDERR_FILENO);
   const auto trouble = [this](const std::string& why) {
     options_.logger->warn("cannot accept connections: {}; trying again, said once", why);
   };

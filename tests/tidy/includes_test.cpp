@@ -19,7 +19,7 @@ static const std::map<std::string, std::vector<std::string>> kAllowed = {
     {"server",
      {"solver/", "scenes/", "protocol/", "server/", "asio", "openssl/", "sodium.h", "spdlog/",
       "nlohmann/", "prometheus/", "civetweb.h", "toml++/", "netinet/", "fcntl.h", "unistd.h",
-      "sys/", "signal.h", "sched.h"}},
+      "sys/", "signal.h", "sched.h", "poll.h"}},
     {"client", {"solver/", "scenes/", "protocol/", "client/", "asio", "openssl/"}},
     {"protocol/transport", {"protocol/transport/", "asio", "openssl/"}},
     {"cli",
