@@ -70,6 +70,39 @@ void check_rooms(const ServerConfig& config, const Complain& complain) {
   }
 }
 
+/// What an exact state of the scene takes as the match begins, in bytes; 0 where it cannot.
+std::uint64_t first_state_bytes(const scenes::Scene& scene) {
+  const auto simulation = scenes::Simulation::create(scene);
+  std::vector<std::byte> state;
+  if (simulation.ok()) simulation.value().encode(state);
+  return state.size();
+}
+
+/// A room keeps what its late spectators need; within the bounds, where that can be told before.
+void check_delays(const ServerConfig& config, const Complain& complain) {
+  const Limits& limits = config.host.limits.room;
+  for (const auto& [name, of] : config.host.templates) {
+    const std::uint64_t delay_ticks = of.settings.spectator_delay_ticks;
+    if (delay_ticks == 0) continue;
+    const std::string key = "template." + name + ".spectator_delay_ticks";
+    const std::uint64_t frames = frames_for_delay(delay_ticks, limits.keyframe_ticks);
+    if (frames > limits.frames_kept_max) {
+      complain(key, "it and twice limits.keyframe_ticks are " + std::to_string(frames) +
+                        " frames, of at most " + std::to_string(limits.frames_kept_max) +
+                        " that limits.frames_kept allows");
+      continue;
+    }
+    const std::uint64_t states = states_for_delay(delay_ticks, limits.keyframe_ticks);
+    const std::uint64_t bytes = states * first_state_bytes(of.settings.scene);
+    if (bytes <= limits.keyframe_bytes_max) continue;
+    complain(key, "with limits.keyframe_ticks it needs " + std::to_string(states) +
+                      " kept states, which take " + std::to_string(bytes) +
+                      " bytes as the match begins, of at most " +
+                      std::to_string(limits.keyframe_bytes_max) +
+                      " that limits.keyframe_bytes allows");
+  }
+}
+
 void check_tokens(ServerConfig& config, const Complain& complain) {
   const std::string key = "admission.keys_file";
   const std::string& file = config.token_keys_file;
@@ -118,6 +151,7 @@ void check_config(ServerConfig& config, const Complain& complain) {
   check_tls(config, complain);
   check_admin(config, complain);
   check_rooms(config, complain);
+  check_delays(config, complain);
 }
 
 std::string config_mistakes_text(const std::string& file,

@@ -43,6 +43,8 @@ struct Limits {
   std::chrono::nanoseconds resume{std::chrono::seconds{10}};  ///< 0: a lost seat is free at once.
   std::uint32_t slow_ticks_max = 120;  ///< Inputs missed in a row before `RoomOptions::slow`.
 
+  // What late spectators need is kept all the same; a configuration that has no room for it is
+  // refused.
   std::size_t frames_kept_max = 3600;
   std::uint64_t keyframe_ticks = 60;
   std::size_t keyframe_bytes_max = std::size_t{8} << 20;
@@ -62,6 +64,15 @@ inline Limits at_tick_rate(std::uint32_t tick_rate_millihertz, Limits limits) {
     *per_s = std::max(*per_s, std::min(scaled, kMost));
   }
   return limits;
+}
+
+/// What a room has to keep for spectators that see the match so many ticks late: they are served
+/// from the kept state before what they may see, and by the frames behind it. 0 without a delay.
+inline std::uint64_t frames_for_delay(std::uint64_t delay_ticks, std::uint64_t keyframe_ticks) {
+  return delay_ticks == 0 ? 0 : delay_ticks + 2 * keyframe_ticks;
+}
+inline std::uint64_t states_for_delay(std::uint64_t delay_ticks, std::uint64_t keyframe_ticks) {
+  return delay_ticks == 0 ? 0 : delay_ticks / keyframe_ticks + 2;
 }
 
 struct RoomOptions {

@@ -9,9 +9,9 @@
 namespace cycloid::server {
 namespace {
 
-/// A delayed spectator is served from the ring, from the keyframe before what it may see.
 std::size_t frames_kept(const RoomOptions& options) {
-  const std::uint64_t needed = options.spectator_delay_ticks + 2 * options.limits.keyframe_ticks;
+  const std::uint64_t needed =
+      frames_for_delay(options.spectator_delay_ticks, options.limits.keyframe_ticks);
   return std::max<std::size_t>(options.limits.frames_kept_max, needed);
 }
 

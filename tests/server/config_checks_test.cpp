@@ -28,6 +28,32 @@ TEST(ConfigChecks, APipeIsNoFileAndIsNotWaitedFor) {
   EXPECT_EQ(config_mistakes_text("f", itself.mistakes), "f: the file cannot be read");
 }
 
+/// Of a match that late spectators see as long as they do, what it keeps has bounds that hold.
+TEST(ConfigChecks, ADelayThatWhatIsKeptHasNoRoomForIsRefused) {
+  const auto mistakes = [](const std::string& limits, const std::string& delay_ticks) {
+    const ConfigResult read =
+        read_config("[limits]\n" + limits + "\n[template.late]\nscene = \"two-seats\"\n" +
+                        "spectator_delay_ticks = " + delay_ticks + "\n" + kConfigRooms,
+                    load_for_test);
+    return config_mistakes_text("f", read.mistakes);
+  };
+  const std::string key = "f:5: template.late.spectator_delay_ticks: ";
+  EXPECT_EQ(mistakes("frames_kept = 1000", "880"), "");
+  EXPECT_EQ(mistakes("frames_kept = 1000", "881"),
+            key +
+                "it and twice limits.keyframe_ticks are 1001 frames, of at most 1000 that "
+                "limits.frames_kept allows");
+  EXPECT_EQ(mistakes("keyframe_ticks = 100000\nframes_kept = 1", "0"), "");
+  const std::string states = mistakes("keyframe_bytes = 65536", "3480");
+  EXPECT_EQ(states.substr(0, states.find(" bytes"))
+                .find(key + "with limits.keyframe_ticks it "
+                            "needs 60 kept states, which take "),
+            0u)
+      << states;
+  EXPECT_NE(states.find("of at most 65536 that limits.keyframe_bytes allows"), std::string::npos);
+  EXPECT_EQ(mistakes("", "3480"), "");
+}
+
 /// The one file is good.
 TEST(ConfigChecks, AMistakeInTheKeyOfTlsIsNotTheCertificates) {
   const ConfigFile certificate("certificate");

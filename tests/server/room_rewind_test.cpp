@@ -128,6 +128,16 @@ TEST_F(RoomRewind, TheOldestTickIsTheFirstWhoseFrameIsKept) {
   EXPECT_EQ(log_.branches[0].tick, 80u);
 }
 
+TEST_F(RoomRewind, WithoutADelayNoMoreFramesAreKeptThanTheBoundSays) {
+  Limits limits;
+  limits.frames_kept_max = 30;
+  limits.keyframe_ticks = 20;
+  open(limits);
+  run(100);  // Keeps the frames from 71 on, and the states of 80 and 100.
+  EXPECT_FALSE(room_->rewind(75)) << "the frames from 61 on would lead there";
+  EXPECT_TRUE(room_->rewind(85));
+}
+
 class RoomBranches : public RoomTest {
  protected:
   /// Plays, and lets the mirror hear; both branches have inputs of their own.
