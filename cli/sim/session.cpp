@@ -28,11 +28,11 @@ Session::Session(std::shared_ptr<Wire> wire, const House& house, const server::L
       plant_(plant),
       chronicle_(&chronicle),
       tamper_(plant) {
-  enter();
+  enter(wire_->address);
 }
 
-void Session::enter() {
-  const auto begun = house_.gate->begin(wire_->address, chronicle_->now_ns);
+void Session::enter(const server::PeerAddress& from) {
+  const auto begun = house_.gate->begin(from, chronicle_->now_ns);
   if (const auto* refused = std::get_if<server::GateRefused>(&begun)) return turn_away(*refused);
   gate_id_ = std::get<server::GateId>(begun);
 }
@@ -94,7 +94,8 @@ void Session::receive(std::span<const std::byte> bytes) {
   if (plant_ != Plant::kRoomExtendsDeadline) return hear_at_gate(bytes);
   said_.insert(said_.end(), bytes.begin(), bytes.end());
   house_.gate->end(gate_id_);
-  enter();
+  // Not from its own address, against which every byte would count as a connection.
+  enter(server::PeerAddress::v4({127, 0, 0, 1}));
   if (stage_ == Stage::kGate) hear_at_gate(said_);
 }
 

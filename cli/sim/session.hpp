@@ -50,7 +50,7 @@ class Session {
  private:
   enum class Stage : std::uint8_t { kGate, kRoom, kTurnedAway };
 
-  void enter();
+  void enter(const server::PeerAddress& from);
   void hear_at_gate(std::span<const std::byte> bytes);
   bool wants_bytes() const { return stage_ != Stage::kRoom || house_.room->wants_bytes(id_); }
   /// Nothing will be said to it any more but what waits already.

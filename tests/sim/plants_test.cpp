@@ -58,6 +58,19 @@ TEST_P(SimPlants, AreFound) {
   FAIL() << plant_name(planted.plant) << " is not found in " << kPlantSeeds << " seeds";
 }
 
+// Every byte of its hello begins the wait anew, and nothing else about it is wrong: of an address
+// that has said many bytes nobody is refused.
+TEST(SimPlantOfTheDeadline, IsSeenByTheDeadlineAlone) {
+  for (std::uint64_t seed = 1; seed <= kPlantSeeds; ++seed) {
+    Settings settings = draw_settings(seed);
+    settings.plant = Plant::kRoomExtendsDeadline;
+    const SimReport report = simulate(settings);
+    if (report.passed()) continue;
+    EXPECT_EQ(report.violation->invariant, Invariant::kDeadline)
+        << "seed " << seed << ": " << report.violation->text;
+  }
+}
+
 std::string name_of(const testing::TestParamInfo<PlantCase>& info) {
   std::string name = plant_name(info.param.plant);
   std::erase(name, '-');
