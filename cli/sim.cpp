@@ -1,8 +1,12 @@
+#include <algorithm>
 #include <array>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <mutex>
+#include <string_view>
+#include <utility>
 #include <vector>
 
 #include "cli/commands.hpp"
@@ -44,11 +48,23 @@ sim::Settings settings_of(const SimCommand& command, std::uint64_t seed) {
   return settings;
 }
 
+/// As a shell takes it for one word.
+std::string shell_word(const std::string& text) {
+  const auto plain = [](char c) {
+    return (c >= 'a' && c <= 'z') || (c >= 'A' && c <= 'Z') || (c >= '0' && c <= '9') ||
+           std::string_view("-_./:=,+@%").find(c) != std::string_view::npos;
+  };
+  if (!text.empty() && std::ranges::all_of(text, plain)) return text;
+  std::string word = "'";
+  for (const char c : text) word += c == '\'' ? std::string("'\\''") : std::string(1, c);
+  return word + "'";
+}
+
 /// What repeats a run.
 std::string line_of(const SimCommand& command, std::uint64_t seed) {
   std::string line = "cycloid sim --seed " + std::to_string(seed);
   if (command.ticks != 0) line += " --ticks " + std::to_string(command.ticks);
-  if (!command.scene.empty()) line += " --scene " + command.scene;
+  if (!command.scene.empty()) line += " --scene " + shell_word(command.scene);
   if (command.plant != "none") line += " --plant " + command.plant;
   return line;
 }
@@ -98,9 +114,10 @@ Json met_json(const Met& met) {
 
 Exit run_one(const SimCommand& command, bool json) {
   sim::Narrator narrate;
-  if (command.verbose && !json) {
-    narrate = [](std::int64_t now_ns, const std::string& line) {
-      std::cout << std::right << std::setw(12) << seconds(now_ns) << "  " << line << '\n';
+  if (command.verbose) {
+    std::ostream& out = json ? std::cerr : std::cout;
+    narrate = [&out](std::int64_t now_ns, const std::string& line) {
+      out << std::right << std::setw(12) << seconds(now_ns) << "  " << line << '\n';
     };
   }
   const sim::Settings settings = settings_of(command, command.seed);
@@ -116,15 +133,18 @@ Exit run_one(const SimCommand& command, bool json) {
                    {"digest", hex16(report.digest)},
                    {"ticks", report.ticks},
                    {"virtual_ms", report.virtual_ns / 1'000'000},
-                   {"convergence_ms", report.convergence_ns / 1'000'000},
+                   {"convergence_ms", nullptr},
                    {"met", met_json(met)}};
+    if (report.convergence_ns) object["convergence_ms"] = *report.convergence_ns / 1'000'000;
     if (!report.passed()) object["violation"] = violation_json(command, report);
     print_json(object, exit);
     return exit;
   }
   std::cout << "scene " << settings.scene << ", rooms " << settings.rooms << ", ticks "
-            << report.ticks << ", virtual time " << seconds(report.virtual_ns) << ", in sync "
-            << seconds(report.convergence_ns) << " after the faults\n";
+            << report.ticks << ", virtual time " << seconds(report.virtual_ns);
+  if (report.convergence_ns)
+    std::cout << ", in sync " << seconds(*report.convergence_ns) << " after the faults";
+  std::cout << '\n';
   print_met(met);
   std::cout << "digest " << hex16(report.digest) << '\n';
   if (report.passed()) std::cout << "passed\n";
@@ -136,7 +156,7 @@ Exit run_many(const SimCommand& command, bool json) {
   Met met{};
   std::vector<std::uint64_t> digests(command.seeds);
   std::int64_t virtual_ns = 0;
-  Json failed = Json::array();
+  std::map<std::uint64_t, Json> failed;  // By seed, whichever thread was done first.
   std::mutex mutex;
   side_by_side(command.seeds, command.jobs, [&](std::size_t i) {
     const std::uint64_t seed = command.from + i;
@@ -146,16 +166,18 @@ Exit run_many(const SimCommand& command, bool json) {
     virtual_ns += report.virtual_ns;
     add(report, met);
     if (report.passed()) return;
-    failed.push_back(violation_json(command, report));
+    failed.emplace(seed, violation_json(command, report));
     if (!json) print_violation(command, report);
   });
   std::uint64_t digest = 0;
   for (const std::uint64_t one : digests) digest = sim::scramble(digest ^ one);
   const Exit exit = failed.empty() ? kExitGood : kExitDiverged;
   if (json) {
+    Json violations = Json::array();
+    for (const auto& [seed, violation] : failed) violations.push_back(violation);
     print_json({{"from", command.from},
                 {"seeds", command.seeds},
-                {"failed", failed},
+                {"failed", std::move(violations)},
                 {"digest", hex16(digest)},
                 {"virtual_ms", virtual_ns / 1'000'000},
                 {"met", met_json(met)}},
@@ -202,7 +224,9 @@ void add_sim(CLI::App& app, Action& action) {
   command->add_option("--plant", options->plant, "A bug to play with, to see that it is found")
       ->capture_default_str()
       ->check(CLI::IsMember(plant_names()));
-  command->add_flag("-v,--verbose", options->verbose, "Every line of what happens in a run")
+  command
+      ->add_flag("-v,--verbose", options->verbose,
+                 "Every line of what happens in a run (with --json on stderr)")
       ->excludes(seeds);
   command->callback([options, seeds, &action] {
     options->many = seeds->count() != 0;

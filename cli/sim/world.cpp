@@ -36,7 +36,7 @@ class World {
     const std::int64_t begin = chronicle_.now_ns;
     converge();
     SimReport report;
-    report.convergence_ns = chronicle_.now_ns - begin;
+    if (!chronicle_.violation()) report.convergence_ns = chronicle_.now_ns - begin;
     run_for(kTogetherNs);
     part();
     report.seed = settings_.seed;

@@ -14,12 +14,13 @@ namespace cycloid::sim {
 struct SimReport {
   std::uint64_t seed = 0;
   std::optional<Violation> violation;
-  std::uint64_t digest = 0;         ///< Of all that happened: equal on every platform.
-  std::uint64_t confirmed = 0;      ///< Digest of what was confirmed, and of nothing else.
-  std::uint64_t ticks = 0;          ///< Confirmed, in all rooms and eras.
-  std::int64_t virtual_ns = 0;      ///< How long it was for those in it.
-  std::int64_t convergence_ns = 0;  ///< From the end of the faults until all were in sync.
-  Chronicle chronicle;              ///< For its counts.
+  std::uint64_t digest = 0;     ///< Of all that happened: equal on every platform.
+  std::uint64_t confirmed = 0;  ///< Digest of what was confirmed, and of nothing else.
+  std::uint64_t ticks = 0;      ///< Confirmed, in all rooms and eras.
+  std::int64_t virtual_ns = 0;  ///< How long it was for those in it.
+  /// From the end of the faults until all were in sync; nothing where that did not come.
+  std::optional<std::int64_t> convergence_ns;
+  Chronicle chronicle;  ///< For its counts.
 
   bool passed() const { return !violation; }
 };

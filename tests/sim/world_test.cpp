@@ -158,6 +158,14 @@ TEST(SimWorld, WithoutFaultsHasNone) {
   }
 }
 
+TEST(SimWorld, SaysWhenAllWereInSyncOnlyWhereThatCame) {
+  Settings settings = draw_settings(1);
+  settings.plant = Plant::kRoomRepeatsFrame;
+  const SimReport report = simulate(settings);
+  ASSERT_FALSE(report.passed());
+  EXPECT_FALSE(report.convergence_ns);
+}
+
 TEST(SimWorld, MendsADesyncOfOneBit) {
   Settings settings = plain_settings(2);
   settings.client.desync_per_million = kMillion;
