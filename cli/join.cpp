@@ -159,7 +159,10 @@ void set_connection(const JoinCommand& command, client::JoinOptions& options) {
   try {
     options.tls = std::make_shared<const client::ClientTls>(command.trust);
   } catch (const std::runtime_error& error) {
-    throw Failure(kExitUsage, std::string("--tls: ") + error.what());
+    // A mistake in the fingerprint names the field itself.
+    const bool of_file = command.trust.fingerprint.empty();
+    const std::string of_system = command.trust.ca_file.empty() ? "--tls: " : "--tls-ca: ";
+    throw Failure(kExitUsage, (of_file ? of_system : "--tls-") + error.what());
   }
 }
 

@@ -1,6 +1,7 @@
 #include "server/serve.hpp"
 
 #include <algorithm>
+#include <asio/ip/address.hpp>
 #include <chrono>
 #include <cmath>
 #include <iostream>
@@ -61,6 +62,13 @@ Exit exit_of(const server::ServeReport& report) {
 
 std::string host_text(const std::string& address) {
   return address.find(':') != std::string::npos ? "[" + address + "]" : address;
+}
+
+/// For CLI11: "" or the mistake.
+std::string address_mistake(const std::string& text) {
+  asio::error_code error;
+  (void)asio::ip::make_address(text, error);
+  return error ? "\"" + visible(text) + "\" is no IP address" : "";
 }
 
 scenes::Loaded load_for_config(const std::string& name) {
@@ -148,7 +156,8 @@ Exit serve_config(const ServeCommand& command, bool json) {
 }
 
 Exit serve(ServeCommand command, bool json) {
-  if (!command.config.empty()) {
+  if (command.parsed->count("--config") > 0) {
+    if (command.config.empty()) throw Failure(kExitUsage, "--config: is no name of a file");
     if (!command.scene.empty()) {
       throw Failure(kExitUsage, "SCENE and --config: one of them, not both");
     }
@@ -219,7 +228,8 @@ void add_limits(CLI::App& command, server::Limits& limits) {
   command.add_option("--input-delay", limits.input_delay_ticks, "Lead of the inputs in ticks")
       ->capture_default_str()
       ->check(CLI::Range(1u, server::kInputDelayTicksMax));
-  command.add_option("--connections", limits.connections_max, "Most connections at a time")
+  command
+      .add_option("--connections", limits.connections_max, "Most connections of a room at a time")
       ->capture_default_str()
       ->check(CLI::PositiveNumber);
 }
@@ -234,8 +244,9 @@ void add_serve(CLI::App& app, Action& action) {
       action);
   action.files.reads(serving->add_option("SCENE", command->scene,
                                          "A catalogue name or a scene file; or --config"));
-  serving->add_option("--address", options.address, "The address to listen on")
-      ->capture_default_str();
+  serving->add_option("--address", options.address, "The IP address to listen on")
+      ->capture_default_str()
+      ->check(address_mistake);
   serving->add_option("--port", options.port, "The port; 0: any")
       ->capture_default_str()
       ->check(CLI::Range(0, 65535));

@@ -23,7 +23,7 @@ TEST(JoinFlags, ThatAreWrongAreUsageAndNamed) {
   const std::string no_token = folder.file("no.token");
   write_text(no_token, "not a token!\n");
   struct Case {
-    const char* words;
+    std::string words;
     std::vector<std::string> flags;
   };
   const Case cases[] = {
@@ -33,8 +33,9 @@ TEST(JoinFlags, ThatAreWrongAreUsageAndNamed) {
       {"--room: longer than 64 bytes", {"--room", std::string(65, 'a')}},
       {"--name: longer than 64 bytes", {"--name", std::string(65, 'a')}},
       {"--token: ", {"--token", no_token}},
-      {"--tls: fingerprint", {"--tls-fingerprint", "abc"}},
-      {"no certificates in PEM", {"--tls-ca", folder.file("nowhere.pem")}},
+      {"--tls-fingerprint: \"abc\"", {"--tls-fingerprint", "abc"}},
+      {"--tls-ca: " + folder.file("nowhere.pem") + ": no certificates in PEM",
+       {"--tls-ca", folder.file("nowhere.pem")}},
   };
   for (const Case& wrong : cases) {
     std::vector<std::string> command = {"join", "127.0.0.1:1", "half-pipe"};

@@ -62,6 +62,8 @@ TEST(Usage, NumbersThatAnOptionCannotHoldAreRefused) {
       {{"join", "a:1", "half-pipe", "--reconnect", "4294967296"}, "not in range 0 to 4294967295"},
       {{"token", "make", "--seat", "99999999999"},
        "--seat: Value 99999999999 not in range -1 to 255"},
+      {{"serve", "half-pipe", "--address", "foo"}, "--address: \"foo\" is no IP address"},
+      {{"serve", "half-pipe", "--config", ""}, "--config: is no name of a file"},
       {{"serve", "half-pipe", "--tick-rate", "nan"}, "--tick-rate: 'nan' is no number"},
       {{"serve", "half-pipe", "--port", "0", "--ticks", "1", "--input-delay", "61"},
        "--input-delay: Value 61 not in range 1 to 60"},
