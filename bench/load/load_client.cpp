@@ -1,5 +1,7 @@
 #include "bench/load/load_client.hpp"
 
+#include <poll.h>
+
 #include <variant>
 
 namespace cycloid::load {
@@ -12,7 +14,7 @@ double ms_between(Clock::time_point from, Clock::time_point to) {
 }  // namespace
 
 void ClientTally::begin_measuring() {
-  frames = snapshots = gaps = replaced = bytes_in = update_bytes = 0;
+  frames = snapshots = gaps = bytes_in = update_bytes = 0;
   frame_gap_ms.clear();
   input_to_state_ms.clear();
 }
@@ -55,8 +57,7 @@ void LoadClient::greet() {
     queue_.push_back(hello_);
     write();
   }
-  if (plan_.behaviour != Behaviour::kMute) read();
-  if (plan_.behaviour == Behaviour::kMute) ++tally_.joined;
+  read();
 }
 
 void LoadClient::drip() {
@@ -73,9 +74,21 @@ void LoadClient::read() {
   auto arrived = [self = shared_from_this()](const asio::error_code& error, std::size_t bytes) {
     if (error) return self->end();
     self->take(bytes);
+    if (self->silent_) return self->watch_for_the_end();
     if (self->socket_.is_open()) self->read();
   };
   socket_.async_read_some(asio::buffer(incoming_), std::move(arrived));
+}
+
+/// That the server has hung up shows without a read.
+void LoadClient::watch_for_the_end() {
+  if (ended_) return;
+  pollfd server{socket_.native_handle(), POLLRDHUP, 0};
+  if (::poll(&server, 1, 0) > 0) return end();
+  timer_.expires_after(std::chrono::seconds(1));
+  timer_.async_wait([self = shared_from_this()](const asio::error_code& error) {
+    if (!error) self->watch_for_the_end();
+  });
 }
 
 void LoadClient::take(std::size_t bytes) {
@@ -93,6 +106,7 @@ void LoadClient::on_message(const protocol::ServerMessage& message, std::size_t 
     ++tally_.joined;
     seat_ = welcome->seat;
     delay_ticks_ = welcome->input_delay_ticks;
+    silent_ = plan_.behaviour == Behaviour::kMute;
   } else if (const auto* refused = std::get_if<protocol::Refused>(&message)) {
     ++tally_.refused;
     tally_.last_refusal = refused->reason;
@@ -117,16 +131,14 @@ void LoadClient::on_frame(const protocol::InputFrame& frame) {
   tally_.frame_gap_ms.add(ms_between(updated_, now));
   updated_ = now;
   last_tick_ = frame.tick;
+  if (seat_ < 0 || plan_.behaviour != Behaviour::kPlays) return;
+  const auto& mine = frame.seats[static_cast<std::size_t>(seat_)];
+  const bool taken = mine.origin == protocol::Origin::kGiven;
   while (!said_.empty() && said_.front().first <= frame.tick) {
-    if (said_.front().first == frame.tick) {
+    if (taken && said_.front().first == frame.tick) {
       tally_.input_to_state_ms.add(ms_between(said_.front().second, now));
     }
     said_.pop_front();
-  }
-  if (seat_ < 0 || plan_.behaviour != Behaviour::kPlays) return;
-  const auto& mine = frame.seats[static_cast<std::size_t>(seat_)];
-  if (first_said_ != 0 && frame.tick >= first_said_ && mine.origin != protocol::Origin::kGiven) {
-    ++tally_.replaced;
   }
   say_input(frame.tick + delay_ticks_);
 }
@@ -156,7 +168,6 @@ void LoadClient::on_state(std::uint64_t tick) {
 }
 
 void LoadClient::say_input(std::uint64_t tick) {
-  if (first_said_ == 0) first_said_ = tick;
   scenes::SeatInput input;
   const bool right = (tick / 60 + static_cast<std::uint64_t>(seat_)) % 2 == 0;
   input.axes[0] = right ? std::int16_t{20000} : std::int16_t{-20000};

@@ -21,7 +21,7 @@ enum class Behaviour : std::uint8_t {
   kWatches,  ///< Reads all, says nothing.
   kIdles,    ///< Connects and says nothing at all.
   kDrips,    ///< A byte of its hello a second.
-  kMute,     ///< Joins, and never reads again.
+  kMute,     ///< Reads up to the Welcome, and never again.
 };
 
 struct ClientPlan {
@@ -42,14 +42,15 @@ struct ClientTally {
       0;  ///< Connections that the server or an error ended, refused ones among them.
   std::uint64_t frames = 0;
   std::uint64_t snapshots = 0;
-  std::uint64_t gaps = 0;      ///< Frames that were not the next one.
-  std::uint64_t replaced = 0;  ///< Own inputs that were not the ones of the frame.
+  std::uint64_t gaps = 0;  ///< Frames that were not the next one.
   std::uint64_t bytes_in = 0;
   std::uint64_t update_bytes = 0;  ///< Of frames and snapshots alone, as they travel.
   std::string last_refusal;
-  Samples frame_gap_ms;       ///< Between two frames, or snapshots, of a client.
-  Samples input_to_state_ms;  ///< From when an input is queued to what shows its tick.
-  Samples join_ms;            ///< From the connection to the first whole state.
+  Samples frame_gap_ms;  ///< Between two frames, or snapshots, of a client.
+  /// From when an input is queued to what shows its tick. A frame says whether the input was taken,
+  /// and only then it counts; a snapshot does not, so that of these all count.
+  Samples input_to_state_ms;
+  Samples join_ms;  ///< From the connection to the first whole state.
 
   /// Forgets times and bytes, and keeps who is there: the warm-up is over.
   void begin_measuring();
@@ -67,6 +68,7 @@ class LoadClient : public std::enable_shared_from_this<LoadClient> {
   void drip();
   void read();
   void take(std::size_t bytes);
+  void watch_for_the_end();
   void on_message(const protocol::ServerMessage& message, std::size_t bytes);
   void on_frame(const protocol::InputFrame& frame);
   void on_state(std::uint64_t tick);
@@ -87,10 +89,10 @@ class LoadClient : public std::enable_shared_from_this<LoadClient> {
   bool writing_ = false;
   bool ended_ = false;
   bool has_state_ = false;
+  bool silent_ = false;  ///< Reads no more.
   std::int32_t seat_ = protocol::kSpectator;
   std::uint32_t delay_ticks_ = 2;
   std::uint64_t last_tick_ = 0;
-  std::uint64_t first_said_ = 0;
   Clock::time_point opened_;
   Clock::time_point updated_;
   std::deque<std::pair<std::uint64_t, Clock::time_point>> said_;  ///< Inputs not seen yet.

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <cstdio>
 #include <fstream>
+#include <iomanip>
 #include <iostream>
 #include <nlohmann/json.hpp>
+#include <sstream>
 #include <stdexcept>
 
 #include "bench/load/join_age.hpp"
@@ -17,28 +19,34 @@ namespace {
 
 using Json = nlohmann::ordered_json;
 
+/// Null where nothing was measured.
+Json quantile_of(Samples& samples, std::size_t permille) {
+  return samples.size() == 0 ? Json() : Json(samples.quantile(permille));
+}
+
 Json to_json(ScenarioResult& result) {
   Json groups = Json::array();
   for (GroupResult& group : result.groups) {
     ClientTally& tally = group.tally;
     const double updates = static_cast<double>(tally.frames + tally.snapshots);
-    groups.push_back({{"name", group.name},
-                      {"clients", group.clients},
-                      {"joined", tally.joined},
-                      {"refused", tally.refused},
-                      {"closed", tally.closed},
-                      {"last_refusal", tally.last_refusal},
-                      {"frames", tally.frames},
-                      {"snapshots", tally.snapshots},
-                      {"gaps", tally.gaps},
-                      {"inputs_replaced", tally.replaced},
-                      {"bytes_per_update",
-                       updates > 0.0 ? static_cast<double>(tally.update_bytes) / updates : 0.0},
-                      {"update_gap_p99_ms", tally.frame_gap_ms.quantile(990)},
-                      {"input_to_state_p50_ms", tally.input_to_state_ms.quantile(500)},
-                      {"input_to_state_p99_ms", tally.input_to_state_ms.quantile(990)},
-                      {"input_to_state_p999_ms", tally.input_to_state_ms.quantile(999)},
-                      {"join_p99_ms", tally.join_ms.quantile(990)}});
+    if (!result.inputs_show(group)) tally.input_to_state_ms.clear();
+    groups.push_back(
+        {{"name", group.name},
+         {"clients", group.clients},
+         {"joined", tally.joined},
+         {"refused", tally.refused},
+         {"closed", tally.closed},
+         {"last_refusal", tally.last_refusal},
+         {"frames", tally.frames},
+         {"snapshots", tally.snapshots},
+         {"gaps", tally.gaps},
+         {"bytes_per_update",
+          updates > 0.0 ? Json(static_cast<double>(tally.update_bytes) / updates) : Json()},
+         {"update_gap_p99_ms", quantile_of(tally.frame_gap_ms, 990)},
+         {"input_to_state_p50_ms", quantile_of(tally.input_to_state_ms, 500)},
+         {"input_to_state_p99_ms", quantile_of(tally.input_to_state_ms, 990)},
+         {"input_to_state_p999_ms", quantile_of(tally.input_to_state_ms, 999)},
+         {"join_p99_ms", quantile_of(tally.join_ms, 990)}});
   }
   Json overruns = Json::array();
   for (const Stretch& stretch : result.overruns) {
@@ -54,6 +62,8 @@ Json to_json(ScenarioResult& result) {
           {"ticks", result.ticks},
           {"catch_up_ticks", result.catch_up_ticks},
           {"slowed_ms", result.slowed_ms},
+          {"inputs_replaced", result.inputs_replaced},
+          {"inputs_late", result.inputs_late},
           {"cpu_us_per_tick", result.cpu_us_per_tick},
           {"tick_mean_us", result.tick_mean_us},
           {"tick_p99_ms", result.tick_p99_ms},
@@ -65,6 +75,27 @@ Json to_json(ScenarioResult& result) {
           {"own_overruns", result.own_overruns()},
           {"overruns", std::move(overruns)},
           {"groups", std::move(groups)}};
+}
+
+/// With so many digits behind the point; a dash where nothing was measured.
+std::string with_digits(const Json& value, int digits) {
+  if (value.is_null()) return "-";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(digits) << value.get<double>();
+  return text.str();
+}
+
+void print_group(const Json& group) {
+  std::cout << "  " << group["name"].get<std::string>() << ": " << with_digits(group["joined"], 0)
+            << " of " << with_digits(group["clients"], 0) << " joined, "
+            << with_digits(group["closed"], 0) << " closed; "
+            << with_digits(group["bytes_per_update"], 0) << " B an update, gap p99 "
+            << with_digits(group["update_gap_p99_ms"], 1) << " ms; input to state "
+            << with_digits(group["input_to_state_p50_ms"], 1) << "/"
+            << with_digits(group["input_to_state_p99_ms"], 1) << "/"
+            << with_digits(group["input_to_state_p999_ms"], 1) << " ms; join p99 "
+            << with_digits(group["join_p99_ms"], 0) << " ms\n"
+            << std::flush;
 }
 
 void print(const Json& result) {
@@ -87,17 +118,10 @@ void print(const Json& result) {
                 number(stretch["from_s"]), number(stretch["to_s"]), number(stretch["behind"]),
                 number(stretch["control_worst_ms"]));
   }
-  for (const Json& group : result["groups"]) {
-    std::printf(
-        "  %-10s %5.0f of %5.0f joined, %4.0f closed; %.0f B an update, gap p99 %.1f ms; "
-        "input to state %.1f/%.1f/%.1f ms; replaced %.0f; join p99 %.0f ms\n",
-        group["name"].get<std::string>().c_str(), number(group["joined"]), number(group["clients"]),
-        number(group["closed"]), number(group["bytes_per_update"]),
-        number(group["update_gap_p99_ms"]), number(group["input_to_state_p50_ms"]),
-        number(group["input_to_state_p99_ms"]), number(group["input_to_state_p999_ms"]),
-        number(group["inputs_replaced"]), number(group["join_p99_ms"]));
-  }
+  std::printf("  inputs replaced %.0f, late %.0f\n", number(result["inputs_replaced"]),
+              number(result["inputs_late"]));
   std::fflush(stdout);
+  for (const Json& group : result["groups"]) print_group(group);
 }
 
 /// A match of one minute, and of one hour, at 60 Hz.

@@ -77,7 +77,8 @@ class Crowd {
   Crowd(const Scenario& scenario, std::uint16_t port, std::uint64_t scene_digest)
       : scenario_(scenario) {
     for (const ClientGroup& group : scenario.groups) {
-      results_.push_back({group.name, group.behaviour, group.per_room * scenario.rooms, {}});
+      results_.push_back(
+          {group.name, group.behaviour, group.mode, group.per_room * scenario.rooms, {}});
     }
     for (std::size_t g = 0; g < scenario.groups.size(); ++g) {
       for (int i = 0; i < results_[g].clients; ++i) add(g, i, port, scene_digest);
@@ -141,6 +142,8 @@ static ScenarioResult server_figures(const MetricsPage& before, const MetricsPag
   result.ticks = grown("cycloid_room_tick");
   result.catch_up_ticks = grown("cycloid_room_catch_up_ticks_total");
   result.slowed_ms = grown("cycloid_room_slowed_seconds_total") * 1e3;
+  result.inputs_replaced = grown("cycloid_room_inputs_replaced_total");
+  result.inputs_late = grown("cycloid_room_inputs_late_total");
   const auto each_us = [&](double of_s) {
     return result.ticks > 0.0 ? of_s * 1e6 / result.ticks : 0;
   };

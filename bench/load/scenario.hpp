@@ -36,6 +36,7 @@ std::vector<Scenario> scenarios();
 struct GroupResult {
   std::string name;
   Behaviour behaviour = Behaviour::kPlays;
+  protocol::Mode mode = protocol::Mode::kLockstep;
   int clients = 0;
   ClientTally tally;
 };
@@ -48,6 +49,8 @@ struct ScenarioResult {
   double ticks = 0.0;            ///< Of all rooms.
   double catch_up_ticks = 0.0;   ///< Ticks that began after another's time: overruns.
   double slowed_ms = 0.0;        ///< By overload, of all rooms.
+  double inputs_replaced = 0.0;  ///< As the server counts them: of seats that had spoken.
+  double inputs_late = 0.0;      ///< That the server threw away, for their tick had been made.
   double cpu_us_per_tick = 0.0;  ///< Of all that the server does, for each tick of a room.
   double tick_mean_us = 0.0;     ///< To make a tick, without its I/O; by the clock.
   double tick_p99_ms = 0.0;
@@ -65,6 +68,11 @@ struct ScenarioResult {
   /// Overruns of seconds in which the bare timer was in time: those are the server's for sure. Of
   /// the others it is not known, for a server that fills all cores makes a timer late as well.
   double own_overruns() const;
+  /// Whether the group's times from input to state are of inputs that were taken. A snapshot client
+  /// is not told which were thrown away: of its kind they are only where none was.
+  bool inputs_show(const GroupResult& group) const {
+    return group.mode == protocol::Mode::kLockstep || inputs_late == 0.0;
+  }
 };
 
 /// What the server has not held up, in sentences: clients that were refused, lost or never let in,
