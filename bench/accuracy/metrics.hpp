@@ -35,8 +35,8 @@ struct Metrics {
   /// Depth of every pair of shapes that may collide and do overlap, m, from poses alone.
   Spread penetration_transient_m;
   Spread penetration_steady_m;
-  /// Distance between the anchors of every joint that holds two points together, m, from poses
-  /// alone. Absent without such joints.
+  /// How far every rigid joint is from where it belongs, m, from poses alone: peers::gaps_of, which
+  /// says of which joints. Absent without such joints.
   std::optional<Spread> gap_transient_m;
   std::optional<Spread> gap_steady_m;
   /// Kinetic energy and that of gravity: the most of any tick over that at the start, J, not below

@@ -2,10 +2,12 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 #include <set>
 
 #include "solver/collision/bounds_tree.hpp"
 #include "solver/collision/collide.hpp"
+#include "solver/constraints/joint_row.hpp"
 
 namespace cycloid::peers {
 
@@ -81,22 +83,67 @@ std::vector<float> overlaps_of(const WorldState<D>& state, const Poses<D>& poses
   return depths;
 }
 
-static bool holds_points(JointKind kind) {
-  return kind == JointKind::kRevolute || kind == JointKind::kWeld || kind == JointKind::kHinge ||
-         kind == JointKind::kConeTwist;
+/// How far [m] a coordinate is beyond the limits of its joint.
+template <int D>
+static float beyond_limits(const Joint<D>& joint, float coordinate) {
+  return std::max({joint.lower - coordinate, coordinate - joint.upper, 0.0f});
+}
+
+/// How far [m] a joint is from the lengths that it asks for: by its equalities, and beyond the
+/// limits of its coordinate. Nothing where it asks for none.
+template <int D>
+static std::optional<float> off_lengths(const solver::JointFrame<D>& frame) {
+  solver::JointRows<D> rows;
+  rows.clear();
+  solver::rows_of(frame, rows);
+  const bool is_limited = rows.has_axis && frame.joint.limit_enabled != 0;
+  if (rows.count == 0 && !is_limited) return {};
+  const float beyond = is_limited ? beyond_limits(frame.joint, rows.axis.error) : 0.0f;
+  float square = beyond * beyond;
+  // Where a joint has more rows than these, the others are of its rotation.
+  for (int i = 0; i < std::min(rows.count, solver::Dim<D>::kTangents); ++i) {
+    const float error = rows.rows[static_cast<std::size_t>(i)].error;
+    square += error * error;
+  }
+  return std::sqrt(square);
+}
+
+/// Nothing of a joint that gives way by design, holds no lengths, or whose rows nobody knows here.
+template <int D>
+static std::optional<float> joint_gap_of(const WorldState<D>& state, const Joint<D>& joint,
+                                         const Poses<D>& poses) {
+  if (joint.kind == JointKind::kFree || solver::springs_of(joint).first) return {};
+  const Pose<D> a = poses(joint.body_a);
+  const Pose<D> b = poses(joint.body_b);
+  const auto frame = solver::make_frame(state, joint, a.position, b.position - a.position,
+                                        a.rotation, b.rotation, 0.0f);
+  switch (joint.kind) {
+    case JointKind::kRevolute:
+    case JointKind::kWeld:
+    case JointKind::kHinge:
+    case JointKind::kConeTwist:
+      return length(frame.offset);
+    case JointKind::kDistance:
+    case JointKind::kPrismatic:
+    case JointKind::kWheel:
+    case JointKind::kPulley:
+    case JointKind::kCurve:
+      return off_lengths(frame);
+    case JointKind::kFree:
+    case JointKind::kMotor:
+    case JointKind::kTarget:
+    case JointKind::kGear:
+    case JointKind::kUser:
+      break;
+  }
+  return {};
 }
 
 template <int D>
 std::vector<float> gaps_of(const WorldState<D>& state, const Poses<D>& poses) {
   std::vector<float> gaps;
-  for (const Joint<D>& joint : state.joints) {
-    if (!holds_points(joint.kind)) continue;
-    const Pose<D> a = poses(joint.body_a);
-    const Pose<D> b = poses(joint.body_b);
-    const auto gap = (b.position - a.position) +
-                     (rotate(b.rotation, joint.anchor_b) - rotate(a.rotation, joint.anchor_a));
-    gaps.push_back(length(gap));
-  }
+  for (const Joint<D>& joint : state.joints)
+    if (const std::optional<float> gap = joint_gap_of(state, joint, poses)) gaps.push_back(*gap);
   return gaps;
 }
 

@@ -12,10 +12,10 @@ namespace cycloid::peers {
 template <int D>
 using Poses = std::function<solver::Pose<D>(std::uint32_t body)>;
 
-/// One ruler for every engine: our manifolds and the joints' anchors, at given poses.
+/// One ruler for every engine: our manifolds and what our joints hold, at given poses.
 struct Accuracy {
   float overlap_m = 0.0f;  ///< The deepest of any two shapes that may collide.
-  float gap_m = 0.0f;      ///< The widest between the anchors of a joint that holds two points.
+  float gap_m = 0.0f;      ///< The widest of `gaps_of`; 0 without such joints.
   /// Whether every body is somewhere: an engine may lose one to infinity.
   bool finite = true;
 };
@@ -34,7 +34,14 @@ bool are_finite(const solver::WorldState<D>& state, const Poses<D>& poses);
 template <int D>
 std::vector<float> overlaps_of(const solver::WorldState<D>& state, const Poses<D>& poses);
 
-/// The distance [m] between the anchors of every joint that holds two points together, by slot.
+/// How far [m] every rigid joint is from where it belongs, by slot: revolute, weld, hinge and
+/// cone-twist by the distance of their anchors, distance joint and pulley by what their length is
+/// off, prismatic and wheel by the way across their axis, a curve's joint by the distance from the
+/// curve. Where a joint has limits in m (a rope, a slider), by what it is beyond them too.
+///
+/// Left out is what gives way by design: a weld with `hertz`, a distance joint on a spring or a
+/// motor alone, motor and target joints. So are gears and joints of the user, and angles of all,
+/// for they have no size in m here. The distance from an ellipse is to first order.
 template <int D>
 std::vector<float> gaps_of(const solver::WorldState<D>& state, const Poses<D>& poses);
 
