@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "solver/collision/collide.hpp"
+#include "solver/constraints/joint_row.hpp"
 #include "solver/constraints/rows.hpp"
 
 namespace cycloid::accuracy {
@@ -66,32 +67,7 @@ static void measure_row(const WorldState<D>& state, ProblemRow<D>& row) {
                 product<D>(row.jacobian_b, accelerated<D>(b, row.jacobian_b));
 }
 
-/// Whether the equalities of a joint hold whatever it takes.
-template <int D>
-static bool is_rigid(const Joint<D>& joint) {
-  switch (joint.kind) {
-    case JointKind::kRevolute:
-    case JointKind::kPrismatic:
-    case JointKind::kHinge:
-    case JointKind::kGear:
-    case JointKind::kPulley:
-    case JointKind::kCurve:
-    case JointKind::kDistance:
-    case JointKind::kWheel:
-      return true;
-    case JointKind::kWeld:
-      return joint.hertz == 0.0f && joint.angular_hertz == 0.0f;
-    case JointKind::kConeTwist:
-      return joint.torque_max == 0.0f && joint.angular_hertz == 0.0f;
-    case JointKind::kFree:
-    case JointKind::kMotor:
-    case JointKind::kTarget:
-    case JointKind::kUser:
-      break;
-  }
-  return false;
-}
-
+/// Rows of the blocks that hold whatever it takes: a block on a spring counts as given.
 template <int D>
 static void add_joint(const WorldState<D>& state, const Joint<D>& joint,
                       ContactProblem<D>& problem) {
@@ -103,7 +79,10 @@ static void add_joint(const WorldState<D>& state, const Joint<D>& joint,
   solver::JointRows<D> rows;
   rows.clear();
   solver::rows_of(frame, rows);
-  for (int i = 0; i < rows.count; ++i) {
+  const solver::Springs springs = solver::springs_of(joint);
+  const int begin = springs.first ? rows.split : 0;
+  const int end = springs.second ? rows.split : rows.count;
+  for (int i = begin; i < end; ++i) {
     const solver::Row<D>& from = rows.rows[static_cast<std::size_t>(i)];
     ProblemRow<D> row;
     row.body_a = joint.body_a;
@@ -215,7 +194,7 @@ template <int D>
 ContactProblem<D> contact_problem(const WorldState<D>& state) {
   ContactProblem<D> problem;
   for (const Joint<D>& joint : state.joints)
-    if (is_rigid(joint)) add_joint(state, joint, problem);
+    if (joint.kind != JointKind::kFree) add_joint(state, joint, problem);
   for (const Contact<D>& contact : state.contacts) add_points(state, contact, problem);
   find_free_speeds(state, problem);
   return problem;

@@ -29,11 +29,12 @@ struct ProblemRow {
   double friction = 0.0;    ///< Of kFriction: the coefficient.
 };
 
-/// What the last substep had to solve, told from the state after it: the equalities of joints that
-/// do not yield, and for each contact point w_n >= 0 against lambda_n >= 0 and |lambda_t| <= mu
-/// lambda_n against the tangential speed (Coulomb). Every other force and impulse (motors, limits,
-/// springs, gravity) counts as given. A point with a gap may close it within the substep, so w_n of
-/// it is the speed beyond that; overlap asks for no speed. Errors of a bounce count in full.
+/// What the last substep had to solve, told from the state after it: the equalities of joints, and
+/// for each contact point w_n >= 0 against lambda_n >= 0 and |lambda_t| <= mu lambda_n against the
+/// tangential speed (Coulomb). Every other force and impulse (motors, limits, gravity, equalities
+/// that yield as a soft weld's do, or what rubs in a cone-twist) counts as given, and so do the
+/// joints of users. A point with a gap may close it within the substep, so w_n of it is the speed
+/// beyond that; overlap asks for no speed. Errors of a bounce count in full.
 template <int D>
 struct ContactProblem {
   std::vector<ProblemRow<D>> rows;  ///< A normal, then its kTangents friction rows.

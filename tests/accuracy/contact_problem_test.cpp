@@ -155,6 +155,45 @@ TEST(ContactProblem, UniqueImpulsesAreCompared) {
   EXPECT_NEAR(errors->velocity, 0.1, 1e-4);
 }
 
+/// How many rows of a weight that hangs on a joint count.
+template <int D>
+static std::size_t rows_of_weight_on(solver::JointDef<D> joint) {
+  World<D> world = empty_world<D>();
+  solver::BodyDef<D> wall;
+  wall.kind = solver::BodyKind::kStatic;
+  joint.body_a = world.create_body(wall, {}).value();
+  joint.body_b = add_box(world, 0.0f, -1.0f);
+  joint.anchor_b[1] = 1.0f;
+  EXPECT_TRUE(world.create_joint(joint).ok());
+  step(world, 10);
+  return contact_problem(world.state()).rows.size();
+}
+
+// What rubs or springs about a point that holds takes nothing from it.
+TEST(ContactProblem, TakesTheBlocksOfAJointThatDoNotYield) {
+  solver::JointDef<3> shoulder;
+  shoulder.kind = solver::JointKind::kConeTwist;
+  shoulder.axis = {{0.0f, 0.0f, 1.0f}};
+  EXPECT_EQ(rows_of_weight_on(shoulder), 3u);
+  shoulder.torque_max = 0.5f;
+  EXPECT_EQ(rows_of_weight_on(shoulder), 3u);
+  shoulder.angular_hertz = 2.0f;
+  EXPECT_EQ(rows_of_weight_on(shoulder), 3u);
+  solver::JointDef<2> weld;
+  weld.kind = solver::JointKind::kWeld;
+  EXPECT_EQ(rows_of_weight_on(weld), 3u);
+  weld.angular_hertz = 2.0f;
+  EXPECT_EQ(rows_of_weight_on(weld), 2u) << "the point";
+  weld.hertz = 2.0f;
+  EXPECT_EQ(rows_of_weight_on(weld), 0u);
+  weld.angular_hertz = 0.0f;
+  EXPECT_EQ(rows_of_weight_on(weld), 1u) << "the angle";
+  solver::JointDef<2> target;
+  target.kind = solver::JointKind::kTarget;
+  target.force_max = 100.0f;
+  EXPECT_EQ(rows_of_weight_on(target), 0u);
+}
+
 TEST(ContactProblem, DirectSolutionIsLeftOutWhereItHasNoConeOrTooManyRows) {
   World<3> world = resting_box<3>();
   EXPECT_FALSE(direct_errors(contact_problem(world.state()), world.state(), 11).has_value());
