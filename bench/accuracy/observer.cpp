@@ -184,10 +184,8 @@ Metrics Observer<D>::finish(const WorldState<D>& end) {
     metrics_.energy_gained_share = share(metrics_.energy_gained_j, kinetic_max_j_ + lifting_j);
   metrics_.moved_m = farthest_from(positions_start_, end);
   if (speeds_ > 0) metrics_.jitter_m_s = std::sqrt(speed_squares_ / static_cast<double>(speeds_));
-  const double steady_s =
-      static_cast<double>(ticks_ - steady_from_) * static_cast<double>(end.header.tick_s);
-  if (const std::optional<double> crept = stick_.farthest_m())
-    metrics_.stick_drift_mm_min = *crept * 1000.0 / steady_s * 60.0;
+  if (const std::optional<double> crept = stick_.farthest_m_per_tick())
+    metrics_.stick_drift_mm_min = *crept * 1000.0 / static_cast<double>(end.header.tick_s) * 60.0;
   if (!has_impulses_) return metrics_;
   const auto errors = direct_errors(contact_problem(end), end, options_.direct_rows_max);
   if (!errors) return metrics_;

@@ -28,8 +28,9 @@ class StickDrift {
   /// After every tick of the time that is measured. A contact that does not stick in `problem`, or
   /// was not there at the first call, drops out.
   void look(const solver::WorldState<D>& state, const ContactProblem<D>& problem);
-  /// The farthest, m; nothing where no contact has stuck through two calls or more.
-  std::optional<double> farthest_m() const;
+  /// The farthest, m per tick between the calls; nothing where no contact has stuck through two of
+  /// them or more.
+  std::optional<double> farthest_m_per_tick() const;
 
  private:
   struct Sticking {

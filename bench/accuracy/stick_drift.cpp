@@ -74,11 +74,11 @@ void StickDrift<D>::look(const WorldState<D>& state, const ContactProblem<D>& pr
 }
 
 template <int D>
-std::optional<double> StickDrift<D>::farthest_m() const {
+std::optional<double> StickDrift<D>::farthest_m_per_tick() const {
   if (sticking_.empty() || looks_ < 2) return {};
   float farthest = 0.0f;
   for (const Sticking& each : sticking_) farthest = std::max(farthest, length(each.crept));
-  return static_cast<double>(farthest);
+  return static_cast<double>(farthest) / (looks_ - 1);
 }
 
 template class StickDrift<2>;
