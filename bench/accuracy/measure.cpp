@@ -27,6 +27,12 @@ static const solver::WorldState<D>& state_of(const scenes::Simulation& run) {
   return world_of(run, std::integral_constant<int, D>{})->state();
 }
 
+bool is_acted_on(const Subject& subject) {
+  for (const scenes::Seat& seat : subject.scene.seats)
+    if (!seat.script.empty()) return true;
+  return !subject.scene.characters.empty() || subject.act != nullptr;
+}
+
 /// A scene under a setting, stepped by its script.
 class Run {
  public:
@@ -115,8 +121,7 @@ static Measured measure_in(const Subject& subject, const Setting& setting,
                            const MeasureOptions& options) {
   Measured measured{setting, true, {}, {}, 0};
   Run run(subject, setting, options.sleep);
-  Observer<D> observer(state_of<D>(run.simulation()), subject.ticks,
-                       !subject.scene.seats.empty() || subject.act != nullptr, options);
+  Observer<D> observer(state_of<D>(run.simulation()), subject.ticks, is_acted_on(subject), options);
   double rows = 0.0;
   std::uint32_t ticks = 0;
   for (std::uint32_t tick = 1; tick <= subject.ticks && measured.ended; ++tick) {

@@ -16,6 +16,10 @@ struct Subject {
   trials::Act<2> act = nullptr;  ///< Something that happens besides what the scene says.
 };
 
+/// Whether something acts on its bodies of which the state of its world does not tell: the script
+/// of a seat, a character, or `act`.
+bool is_acted_on(const Subject& subject);
+
 /// How thoroughly.
 struct MeasureOptions {
   std::uint32_t every = 5;  ///< Ticks between two looks at the poses.

@@ -43,12 +43,15 @@ struct Metrics {
   /// 0. Springs, motors and seats may bring some in.
   double energy_gained_j = 0.0;
   /// The same over the largest kinetic energy of the run and what lifts all bodies by 0.1 m; no
-  /// unit. Absent where something drives the bodies: a seat, a motor, a body that moves regardless.
+  /// unit. Absent where something besides gravity may bring energy in: the script of a seat, a
+  /// character, a spring, a motor, a user's joint, a body that moves regardless.
   std::optional<double> energy_gained_share;
   /// The furthest that the sum of momenta strays from where gravity takes it, over the largest sum
   /// of their sizes in the run; no unit. Absent where something holds the bodies from outside: a
-  /// body that does not move by itself, damping, or a seat. Angular: about the common centre of
-  /// mass; also absent where gravity acts on some more than on others.
+  /// body that does not move by itself, damping, the script of a seat, a character, a pulley, a
+  /// rack (a gear with an axis of the world) or a user's joint. Angular: about the common centre of
+  /// mass; also absent where gravity acts on some more than on others, where a body does not turn,
+  /// and with gears, whose axles the world bears.
   std::optional<double> momentum_drift;
   std::optional<double> angular_momentum_drift;
   /// The most by which friction exceeds its cone, over the largest normal impulse; no unit. Absent

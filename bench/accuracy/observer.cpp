@@ -8,6 +8,8 @@
 namespace cycloid::accuracy {
 
 using solver::Body;
+using solver::Joint;
+using solver::JointKind;
 using solver::Vec;
 using solver::WorldState;
 
@@ -29,29 +31,50 @@ Spread spread_of(std::vector<double>& sizes) {
   return spread;
 }
 
-/// Whether the bodies are on their own: what they do to each other leaves their momenta alone.
+/// Whether a joint pushes its bodies from a point of the world or along an axis of it, or may,
+/// since nobody knows its rows here.
 template <int D>
-static bool is_free(const WorldState<D>& state, bool seats) {
-  if (seats) return false;
+static bool pushes_from_outside(const Joint<D>& joint) {
+  const bool is_rack = joint.kind == JointKind::kGear && dot(joint.axis, joint.axis) > 0.0f;
+  return is_rack || joint.kind == JointKind::kPulley || joint.kind == JointKind::kUser;
+}
+
+/// Whether the bodies are on their own: what they do to each other leaves their momentum alone.
+template <int D>
+static bool keeps_momentum(const WorldState<D>& state) {
   for (const Body<D>& body : state.bodies) {
     if (body.kind == solver::BodyKind::kFree) continue;
     if (!trials::responds(body) || body.linear_damping > 0.0f || body.angular_damping > 0.0f)
       return false;
   }
+  return std::none_of(state.joints.begin(), state.joints.end(), pushes_from_outside<D>);
+}
+
+/// Whether each body answers to what turns it, and nothing that turns it stands on the world.
+template <int D>
+static bool turns_freely(const WorldState<D>& state) {
+  for (const Body<D>& body : state.bodies)
+    if (body.kind == solver::BodyKind::kParticle || body.fixed_rotation != 0) return false;
+  for (const Joint<D>& joint : state.joints)
+    if (joint.kind == JointKind::kGear) return false;
   return true;
 }
 
-/// Whether something may bring energy in.
+/// Whether a joint may bring energy in.
 template <int D>
-static bool is_driven(const WorldState<D>& state, bool seats) {
-  if (seats) return true;
+static bool may_bring_energy(const Joint<D>& joint) {
+  if (joint.kind == JointKind::kFree) return false;
+  return joint.motor != solver::MotorKind::kOff || joint.hertz > 0.0f ||
+         joint.angular_hertz > 0.0f || joint.kind == JointKind::kMotor ||
+         joint.kind == JointKind::kTarget || joint.kind == JointKind::kUser;
+}
+
+/// Whether a body or a joint may bring energy in, besides gravity.
+template <int D>
+static bool is_driven(const WorldState<D>& state) {
   for (const Body<D>& body : state.bodies)
     if (body.kind == solver::BodyKind::kKinematic) return true;
-  for (const solver::Joint<D>& joint : state.joints)
-    if (joint.motor != solver::MotorKind::kOff || joint.kind == solver::JointKind::kMotor ||
-        joint.kind == solver::JointKind::kTarget)
-      return true;
-  return false;
+  return std::any_of(state.joints.begin(), state.joints.end(), may_bring_energy<D>);
 }
 
 template <int D>
@@ -75,7 +98,7 @@ static Vec<D> weight_of(const WorldState<D>& state) {
 }
 
 template <int D>
-Observer<D>::Observer(const WorldState<D>& start, std::uint32_t ticks, bool seats,
+Observer<D>::Observer(const WorldState<D>& start, std::uint32_t ticks, bool acted_on,
                       const MeasureOptions& options)
     : options_(options), ticks_(ticks) {
   const auto second =
@@ -83,9 +106,9 @@ Observer<D>::Observer(const WorldState<D>& start, std::uint32_t ticks, bool seat
   steady_from_ = ticks - std::min(second, ticks / 2);
   has_impulses_ =
       options.impulses && start.header.tuning.stabilisation != solver::Stabilisation::kXpbd;
-  is_free_ = is_free(start, seats);
-  falls_alike_ = falls_alike(start);
-  is_driven_ = is_driven(start, seats);
+  keeps_momentum_ = !acted_on && keeps_momentum(start);
+  keeps_angular_ = keeps_momentum_ && turns_freely(start) && falls_alike(start);
+  is_driven_ = acted_on || is_driven(start);
   energy_start_j_ = trials::motions_of(start).energy_j;
   momenta_start_ = momenta_of(start);
   weight_ = weight_of(start);
@@ -101,7 +124,7 @@ bool Observer<D>::look(const WorldState<D>& state, std::uint32_t tick) {
   kinetic_max_j_ = std::max(kinetic_max_j_, motions.kinetic_j);
   const bool steady = tick > steady_from_;
   const bool measured = (ticks_ - tick) % options_.every == 0;
-  if (is_free_) look_at_momenta(state, tick);
+  if (keeps_momentum_) look_at_momenta(state, tick);
   if (measured) look_at_poses(state, steady);
   if (has_impulses_ && steady) look_at_impulses(state, measured);
   if (!steady) return true;
@@ -176,9 +199,8 @@ Metrics Observer<D>::finish(const WorldState<D>& end) {
     metrics_.gap_transient_m = spread_of(gaps_[0]);
     metrics_.gap_steady_m = spread_of(gaps_[1]);
   }
-  if (is_free_) metrics_.momentum_drift = share(linear_drift_, linear_size_);
-  if (is_free_ && falls_alike_)
-    metrics_.angular_momentum_drift = share(angular_drift_, angular_size_);
+  if (keeps_momentum_) metrics_.momentum_drift = share(linear_drift_, linear_size_);
+  if (keeps_angular_) metrics_.angular_momentum_drift = share(angular_drift_, angular_size_);
   const double lifting_j = kLift_m * static_cast<double>(length(weight_));
   if (!is_driven_)
     metrics_.energy_gained_share = share(metrics_.energy_gained_j, kinetic_max_j_ + lifting_j);

@@ -50,7 +50,8 @@ template <int D>
 class Observer {
  public:
   /// @param start  the state at tick 0.
-  Observer(const solver::WorldState<D>& start, std::uint32_t ticks, bool seats,
+  /// @param acted_on  is_acted_on: something acts on the bodies of which no state tells.
+  Observer(const solver::WorldState<D>& start, std::uint32_t ticks, bool acted_on,
            const MeasureOptions& options);
   /// After every tick. @returns false where the world is no longer finite.
   bool look(const solver::WorldState<D>& state, std::uint32_t tick);
@@ -66,10 +67,10 @@ class Observer {
   std::uint32_t ticks_;
   std::uint32_t steady_from_;  ///< The last tick of the transient time.
   bool has_impulses_;
-  bool is_free_;      ///< Nothing holds the bodies from outside.
-  bool falls_alike_;  ///< Gravity turns nothing.
+  bool keeps_momentum_;  ///< Nothing pushes the bodies from outside.
+  bool keeps_angular_;   ///< Nor turns them.
+  bool is_driven_;       ///< Something may bring energy in.
   bool has_gaps_ = false;
-  bool is_driven_;  ///< Something may bring energy in.
   double energy_start_j_;
   double kinetic_max_j_ = 0.0;
   Momenta momenta_start_;

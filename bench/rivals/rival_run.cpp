@@ -10,7 +10,7 @@ accuracy::ChartPoint measure_rival(const accuracy::SceneChart& chart, RivalRun<D
                                    accuracy::MeasureOptions options) {
   options.impulses = false;
   const std::uint32_t ticks = chart.subject.ticks;
-  accuracy::Observer<D> observer(run.state(), ticks, !chart.subject.scene.seats.empty(), options);
+  accuracy::Observer<D> observer(run.state(), ticks, accuracy::is_acted_on(chart.subject), options);
   trials::CourseWatch<D> watch(run.state(), ticks);
   accuracy::ChartPoint point;
   point.measured.setting = setting;

@@ -22,22 +22,6 @@ Passage run_with(const scenes::Scene& scene, const accuracy::Setting& setting,
   return run_passage(accuracy::with_setting(scene, setting), ticks);
 }
 
-/// Whether something besides gravity may bring energy in: a seat, a motor, a spring, what moves
-/// come what may.
-bool gives_energy(const scenes::Scene& scene) {
-  bool gives = !scene.characters.empty();
-  for (const scenes::Seat& seat : scene.seats) gives = gives || !seat.script.empty();
-  for (const scenes::SceneBody& body : scene.bodies)
-    gives = gives || body.kind == solver::BodyKind::kKinematic;
-  for (const scenes::SceneJoint& joint : scene.joints) {
-    const bool pulls =
-        joint.kind == solver::JointKind::kMotor || joint.kind == solver::JointKind::kTarget;
-    const bool springs = joint.hertz > 0.0f || joint.angular_hertz > 0.0f;
-    gives = gives || pulls || springs || joint.motor != solver::MotorKind::kOff;
-  }
-  return gives;
-}
-
 /// Tries settings of one scene against one finest run.
 class Chooser {
  public:
@@ -48,6 +32,7 @@ class Chooser {
 
   FinestRun find_finest() {
     double least_m = std::numeric_limits<double>::infinity();
+    bool is_driven = true;
     for (const char* method : kFinestMethods) {
       accuracy::Setting setting = accuracy::published(method);
       setting.substeps = kFinestSubsteps;
@@ -61,12 +46,13 @@ class Chooser {
       const double doubt_m = spread_m + accuracy::position_error_m(measured);
       if (!(doubt_m < least_m)) continue;
       least_m = doubt_m;
+      is_driven = !measured.metrics.energy_gained_share;
       finest_ = {true, accuracy::name_of(setting), spread_m, 0.0, measured.metrics.energy_gained_j};
       finest_passage_ = std::move(fine);
     }
     finest_.tolerance_m = std::max({kElsewhereOfSize * typical_size_m(subject_.scene),
                                     2.0 * finest_.spread_m, request_.error_m});
-    if (!gives_energy(subject_.scene)) {
+    if (!is_driven) {
       energy_max_j_ = finest_.energy_gained_j;
       for (const MovingBody& body : finest_passage_.bodies)
         energy_max_j_ += body.weight_n * request_.error_m;
