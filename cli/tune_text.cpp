@@ -2,6 +2,8 @@
 
 #include <iomanip>
 #include <iostream>
+#include <optional>
+#include <sstream>
 
 #include "bench/accuracy/settings.hpp"
 #include "cli/visible.hpp"
@@ -18,16 +20,23 @@ std::string setting_text(const Tried& tried) {
   return accuracy::name_of(tried.measured.setting);
 }
 
+std::string energy_text(std::optional<double> energy_j) {
+  if (!energy_j) return "-";
+  std::ostringstream text;
+  text << std::fixed << std::setprecision(3) << *energy_j;
+  return text.str();
+}
+
+/// What nobody has measured is a dash.
 void print_tried(const Tried& tried, bool chosen) {
   const bool faulted = tried.verdict == tuning::TriedVerdict::kFaulted;
-  const auto length = [&](double length_m) { return faulted ? "-" : length_text(length_m); };
   std::cout << std::left << std::setw(22) << setting_text(tried) << std::right << std::fixed
             << std::setprecision(1) << std::setw(12) << tried.measured.price.rows_per_tick
             << std::setw(10) << 1.0e-3 * tried.measured.price.ns_per_tick << std::setw(12)
-            << length(tried.error_m) << std::setw(12) << length(tried.moved_m) << std::setw(11)
-            << std::setprecision(3) << tried.measured.metrics.energy_gained_j << "  "
-            << hex16(tried.digest) << "  " << tuning::name_of(tried.verdict)
-            << (chosen ? " <- chosen" : "") << '\n';
+            << (faulted ? "-" : length_text(tried.error_m)) << std::setw(12)
+            << (tried.moved_m ? length_text(*tried.moved_m) : "-") << std::setw(11)
+            << energy_text(tried.measured.metrics.energy_gained_j) << "  " << hex16(tried.digest)
+            << "  " << tuning::name_of(tried.verdict) << (chosen ? " <- chosen" : "") << '\n';
 }
 
 void print_change(const char* what, double with, double without, int digits) {
@@ -57,15 +66,21 @@ Json setting_json(const accuracy::Setting& setting) {
           {"relax_sweeps", setting.relax_sweeps}};
 }
 
+/// What nobody has measured is null.
+Json measured_or_null(std::optional<double> value) {
+  return value ? Json(*value) : Json();
+}
+
 Json tried_json(const Tried& tried) {
   Json object = setting_json(tried.measured.setting);
   object["verdict"] = tuning::name_of(tried.verdict);
   object["rows_per_tick"] = tried.measured.price.rows_per_tick;
   object["ns_per_tick"] = tried.measured.price.ns_per_tick;
   object["state_bytes"] = tried.measured.price.state_bytes;
-  object["error_m"] = tried.error_m;
-  object["moved_m"] = tried.moved_m;
-  object["energy_gained_j"] = tried.measured.metrics.energy_gained_j;
+  const bool faulted = tried.verdict == tuning::TriedVerdict::kFaulted;
+  object["error_m"] = faulted ? Json() : Json(tried.error_m);
+  object["moved_m"] = measured_or_null(tried.moved_m);
+  object["energy_gained_j"] = measured_or_null(tried.measured.metrics.energy_gained_j);
   object["digest"] = hex16(tried.digest);
   return object;
 }

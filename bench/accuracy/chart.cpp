@@ -42,7 +42,7 @@ static ChartPoint measure_point(const SceneChart& chart, const Setting& setting,
 }
 
 static bool has_failed(const SceneChart& chart, const ChartPoint& point) {
-  const double moved_m = point.measured.metrics.moved_m;
+  const double moved_m = point.measured.metrics.moved_m.value_or(0.0);
   const bool fell = point.outcome && point.outcome->verdict == trials::Verdict::kFails;
   return !point.measured.ended || fell || (chart.moved_max_m > 0.0 && moved_m > chart.moved_max_m);
 }

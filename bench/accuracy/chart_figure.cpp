@@ -79,10 +79,12 @@ static std::string label_of(const ChartPoint& point, double value) {
     text += "\\n" + short_number(measured.price.rows_per_tick) + " rows a tick";
   if (!point.times.empty())
     text += "\\n" + short_number(1e-3 * measured.price.ns_per_tick) + " us a tick";
-  text += "\\noverlap " + short_number(measured.metrics.penetration_steady_m.max) + " m";
-  if (measured.metrics.gap_steady_m)
-    text += ", gap " + short_number(measured.metrics.gap_steady_m->max) + " m";
-  text += "\\nenergy gained " + short_number(measured.metrics.energy_gained_j) + " J";
+  const Metrics& metrics = measured.metrics;
+  if (metrics.penetration_steady_m)
+    text += "\\noverlap " + short_number(metrics.penetration_steady_m->max) + " m";
+  if (metrics.gap_steady_m) text += ", gap " + short_number(metrics.gap_steady_m->max) + " m";
+  if (metrics.energy_gained_j)
+    text += "\\nenergy gained " + short_number(*metrics.energy_gained_j) + " J";
   if (point.outcome) text += "\\n" + trials::outcome_text(*point.outcome);
   if (!measured.ended) text += "\\ndid not end";
   return text;

@@ -5,14 +5,14 @@
 
 namespace cycloid::accuracy {
 
-static double gap_of(const std::optional<Spread>& gap) {
-  return gap ? gap->max : 0.0;
-}
-
 static std::optional<double> worst_error(const Measured& measured) {
   const Metrics& metrics = measured.metrics;
-  return std::max({metrics.penetration_transient_m.max, metrics.penetration_steady_m.max,
-                   gap_of(metrics.gap_transient_m), gap_of(metrics.gap_steady_m)});
+  std::optional<double> worst;
+  for (const std::optional<Spread>& spread :
+       {metrics.penetration_transient_m, metrics.penetration_steady_m, metrics.gap_transient_m,
+        metrics.gap_steady_m})
+    if (spread) worst = std::max(spread->max, worst.value_or(0.0));
+  return worst;
 }
 
 std::span<const ErrorKind> error_kinds() {
@@ -29,12 +29,10 @@ std::span<const ErrorKind> error_kinds() {
        [](M measured) { return measured.metrics.wrench_error; }},
       {"consistency", "distance from steps 16 times smaller, m",
        [](M measured) { return measured.metrics.consistency_m; }},
-      {"energy", "energy gained, J",
-       [](M measured) { return std::optional(measured.metrics.energy_gained_j); }},
+      {"energy", "energy gained, J", [](M measured) { return measured.metrics.energy_gained_j; }},
       {"jitter", "speed at the end (root mean square), m/s",
-       [](M measured) { return std::optional(measured.metrics.jitter_m_s); }},
-      {"moved", "farthest way of a body, m",
-       [](M measured) { return std::optional(measured.metrics.moved_m); }},
+       [](M measured) { return measured.metrics.jitter_m_s; }},
+      {"moved", "farthest way of a body, m", [](M measured) { return measured.metrics.moved_m; }},
   }};
   return kKinds;
 }

@@ -141,9 +141,10 @@ static Measured measure_in(const Subject& subject, const Setting& setting,
 
 double position_error_m(const Measured& measured) {
   const Metrics& metrics = measured.metrics;
-  if (!measured.ended) return std::numeric_limits<double>::infinity();
-  const double gap = metrics.gap_steady_m ? metrics.gap_steady_m->p95 : 0.0;
-  return std::max(metrics.penetration_steady_m.p95, gap);
+  if (!measured.ended || !metrics.penetration_steady_m)
+    return std::numeric_limits<double>::infinity();
+  const double overlap = metrics.penetration_steady_m->p95;
+  return metrics.gap_steady_m ? std::max(overlap, metrics.gap_steady_m->p95) : overlap;
 }
 
 Measured measure(const Subject& subject, const Setting& setting, const MeasureOptions& options) {

@@ -45,8 +45,9 @@ struct Measured {
 Measured measure(const Subject& subject, const Setting& setting, const MeasureOptions& options);
 
 /// The distance by which shapes and joints are off in the steady time, m: the larger of the 95th
-/// percentiles of penetration and gap; infinite where the run has not ended. It does not see that
-/// something has fallen: see Metrics::moved_m and trials::judge.
+/// percentiles of penetration and gap, in a scene without rigid joints of penetration alone;
+/// infinite where the run has not ended, since nobody has measured its steady time. It does not see
+/// that something has fallen: see Metrics::moved_m and trials::judge.
 double position_error_m(const Measured& measured);
 
 /// Processor time of a tick, ns: one run from the start, of which only the steps are timed.

@@ -13,8 +13,9 @@ struct Spread {
 };
 
 /// How wrong a world is. What a scene does not have, or nobody can say, is absent: it is never 0
-/// for that. "Steady" is the last second of the run, or its second half where that is shorter;
-/// "transient" is what comes before. Taken after the ticks of `MeasureOptions::every`.
+/// for that. "Steady" is the last second of the run, or its second half where that is shorter, and
+/// the one tick of a run of one; "transient" is what comes before. Each is absent where the run
+/// ended before a tick of it was looked at. Taken after the ticks of `MeasureOptions::every`.
 /// Sources: Facchinei and Pang 2003, 1.5; Le Lidec et al. 2023, arXiv 2304.06372 (residuals); Erez,
 /// Tassa, Todorov 2015, "Simulation Tools for Model-Based Robotics" (energy, momentum,
 /// consistency); Boeing and Braunl 2007, "Evaluation of real-time physics simulation systems"
@@ -33,15 +34,15 @@ struct Metrics {
   std::optional<double> wrench_error;
   std::optional<double> velocity_error;
   /// Depth of every pair of shapes that may collide and do overlap, m, from poses alone.
-  Spread penetration_transient_m;
-  Spread penetration_steady_m;
+  std::optional<Spread> penetration_transient_m;
+  std::optional<Spread> penetration_steady_m;
   /// How far every rigid joint is from where it belongs, m, from poses alone: peers::gaps_of, which
   /// says of which joints. Absent without such joints.
   std::optional<Spread> gap_transient_m;
   std::optional<Spread> gap_steady_m;
   /// Kinetic energy and that of gravity: the most of any tick over that at the start, J, not below
   /// 0. Springs, motors and seats may bring some in.
-  double energy_gained_j = 0.0;
+  std::optional<double> energy_gained_j;
   /// The same over the largest kinetic energy of the run and what lifts all bodies by 0.1 m; no
   /// unit. Absent where something besides gravity may bring energy in: the script of a seat, a
   /// character, a spring, a motor, a user's joint, a body that moves regardless.
@@ -61,12 +62,12 @@ struct Metrics {
   /// tangential motion, the largest, mm per minute. Absent where nothing sticks so long.
   std::optional<double> stick_drift_mm_min;
   /// Root mean square of the bodies' speeds in the steady time, m/s; of a scene that comes to rest
-  /// it is jitter.
-  double jitter_m_s = 0.0;
-  /// The farthest that a body is from where it was at the start, m, at the end: of a scene that
-  /// should stand, how far it has not. Overlap is no sign of that: what has fallen overlaps
-  /// nothing.
-  double moved_m = 0.0;
+  /// it is jitter. Absent without bodies that forces move.
+  std::optional<double> jitter_m_s;
+  /// The farthest that a body is from where it was at the start, m, at the last tick that was
+  /// looked at: of a scene that should stand, how far it has not. Overlap is no sign of that: what
+  /// has fallen overlaps nothing. Absent without bodies that forces move.
+  std::optional<double> moved_m;
   /// Distance between where the bodies are and where the same method takes them in steps 16 times
   /// smaller: root mean square over bodies and ticks of the first second, m. Absent unless asked.
   std::optional<double> consistency_m;

@@ -31,6 +31,10 @@ Spread spread_of(std::vector<double>& sizes) {
   return spread;
 }
 
+static void take_worst(double value, std::optional<double>& worst) {
+  worst = std::max(value, worst.value_or(0.0));
+}
+
 /// Whether a joint pushes its bodies from a point of the world or along an axis of it, or may,
 /// since nobody knows its rows here.
 template <int D>
@@ -103,7 +107,7 @@ Observer<D>::Observer(const WorldState<D>& start, std::uint32_t ticks, bool acte
     : options_(options), ticks_(ticks) {
   const auto second =
       static_cast<std::uint32_t>(std::lround(1.0 / static_cast<double>(start.header.tick_s)));
-  steady_from_ = ticks - std::min(second, ticks / 2);
+  steady_from_ = ticks - std::min(second, ticks - ticks / 2);
   has_impulses_ =
       options.impulses && start.header.tuning.stabilisation != solver::Stabilisation::kXpbd;
   keeps_momentum_ = !acted_on && keeps_momentum(start);
@@ -116,12 +120,24 @@ Observer<D>::Observer(const WorldState<D>& start, std::uint32_t ticks, bool acte
   look_at_momenta(start, 0);
 }
 
+/// The farthest that a body is from where it was; nothing without bodies that forces move.
+template <int D>
+static std::optional<double> farthest_from(const std::vector<Vec<D>>& start,
+                                           const WorldState<D>& now) {
+  std::optional<double> farthest;
+  for (std::size_t i = 0; i < std::min(start.size(), now.bodies.size()); ++i)
+    if (trials::responds(now.bodies[i]))
+      take_worst(static_cast<double>(length(now.bodies[i].position - start[i])), farthest);
+  return farthest;
+}
+
 template <int D>
 bool Observer<D>::look(const WorldState<D>& state, std::uint32_t tick) {
   const trials::Motions motions = trials::motions_of(state);
   if (!motions.finite) return false;
-  metrics_.energy_gained_j = std::max(metrics_.energy_gained_j, motions.energy_j - energy_start_j_);
+  take_worst(motions.energy_j - energy_start_j_, metrics_.energy_gained_j);
   kinetic_max_j_ = std::max(kinetic_max_j_, motions.kinetic_j);
+  metrics_.moved_m = farthest_from(positions_start_, state);
   const bool steady = tick > steady_from_;
   const bool measured = (ticks_ - tick) % options_.every == 0;
   if (keeps_momentum_) look_at_momenta(state, tick);
@@ -154,16 +170,12 @@ void Observer<D>::look_at_poses(const WorldState<D>& state, bool steady) {
   const peers::Poses<D> poses = [&](std::uint32_t body) {
     return solver::Pose<D>{state.bodies[body].position, state.bodies[body].rotation};
   };
+  const std::size_t time = steady ? 1 : 0;
+  has_looked_[time] = true;
   for (const float depth : peers::overlaps_of<D>(state, poses))
-    depths_[steady ? 1 : 0].push_back(static_cast<double>(depth));
-  for (const float gap : peers::gaps_of<D>(state, poses)) {
-    has_gaps_ = true;
-    gaps_[steady ? 1 : 0].push_back(static_cast<double>(gap));
-  }
-}
-
-static void take_worst(double value, std::optional<double>& worst) {
-  worst = std::max(value, worst.value_or(0.0));
+    depths_[time].push_back(static_cast<double>(depth));
+  for (const float gap : peers::gaps_of<D>(state, poses))
+    gaps_[time].push_back(static_cast<double>(gap));
 }
 
 template <int D>
@@ -177,15 +189,6 @@ void Observer<D>::look_at_impulses(const WorldState<D>& state, bool measured) {
   take_worst(cone_excess(problem), metrics_.cone_excess);
 }
 
-template <int D>
-static double farthest_from(const std::vector<Vec<D>>& start, const WorldState<D>& end) {
-  float farthest = 0.0f;
-  for (std::size_t i = 0; i < std::min(start.size(), end.bodies.size()); ++i)
-    if (trials::responds(end.bodies[i]))
-      farthest = std::max(farthest, length(end.bodies[i].position - start[i]));
-  return static_cast<double>(farthest);
-}
-
 /// Drift over size; where nothing ever moved there is none.
 static double share(double drift, double size) {
   return size > 0.0 ? drift / size : 0.0;
@@ -193,18 +196,16 @@ static double share(double drift, double size) {
 
 template <int D>
 Metrics Observer<D>::finish(const WorldState<D>& end) {
-  metrics_.penetration_transient_m = spread_of(depths_[0]);
-  metrics_.penetration_steady_m = spread_of(depths_[1]);
-  if (has_gaps_) {
-    metrics_.gap_transient_m = spread_of(gaps_[0]);
-    metrics_.gap_steady_m = spread_of(gaps_[1]);
-  }
+  if (!metrics_.energy_gained_j) return metrics_;  // There was no tick to look at.
+  if (has_looked_[0]) metrics_.penetration_transient_m = spread_of(depths_[0]);
+  if (has_looked_[1]) metrics_.penetration_steady_m = spread_of(depths_[1]);
+  if (!gaps_[0].empty()) metrics_.gap_transient_m = spread_of(gaps_[0]);
+  if (!gaps_[1].empty()) metrics_.gap_steady_m = spread_of(gaps_[1]);
   if (keeps_momentum_) metrics_.momentum_drift = share(linear_drift_, linear_size_);
   if (keeps_angular_) metrics_.angular_momentum_drift = share(angular_drift_, angular_size_);
   const double lifting_j = kLift_m * static_cast<double>(length(weight_));
   if (!is_driven_)
-    metrics_.energy_gained_share = share(metrics_.energy_gained_j, kinetic_max_j_ + lifting_j);
-  metrics_.moved_m = farthest_from(positions_start_, end);
+    metrics_.energy_gained_share = share(*metrics_.energy_gained_j, kinetic_max_j_ + lifting_j);
   if (speeds_ > 0) metrics_.jitter_m_s = std::sqrt(speed_squares_ / static_cast<double>(speeds_));
   if (const std::optional<double> crept = stick_.farthest_m_per_tick())
     metrics_.stick_drift_mm_min = *crept * 1000.0 / static_cast<double>(end.header.tick_s) * 60.0;

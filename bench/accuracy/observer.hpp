@@ -67,10 +67,10 @@ class Observer {
   std::uint32_t ticks_;
   std::uint32_t steady_from_;  ///< The last tick of the transient time.
   bool has_impulses_;
-  bool keeps_momentum_;  ///< Nothing pushes the bodies from outside.
-  bool keeps_angular_;   ///< Nor turns them.
-  bool is_driven_;       ///< Something may bring energy in.
-  bool has_gaps_ = false;
+  bool keeps_momentum_;                  ///< Nothing pushes the bodies from outside.
+  bool keeps_angular_;                   ///< Nor turns them.
+  bool is_driven_;                       ///< Something may bring energy in.
+  bool has_looked_[2] = {false, false};  ///< At poses: transient, steady.
   double energy_start_j_;
   double kinetic_max_j_ = 0.0;
   Momenta momenta_start_;

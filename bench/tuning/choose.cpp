@@ -47,7 +47,8 @@ class Chooser {
       if (!(doubt_m < least_m)) continue;
       least_m = doubt_m;
       is_driven = !measured.metrics.energy_gained_share;
-      finest_ = {true, accuracy::name_of(setting), spread_m, 0.0, measured.metrics.energy_gained_j};
+      finest_ = {true, accuracy::name_of(setting), spread_m, 0.0,
+                 measured.metrics.energy_gained_j.value_or(0.0)};
       finest_passage_ = std::move(fine);
     }
     finest_.tolerance_m = std::max({kElsewhereOfSize * typical_size_m(subject_.scene),
@@ -92,7 +93,7 @@ class Chooser {
  private:
   TriedVerdict judge(const Tried& tried) const {
     if (!(tried.error_m <= request_.error_m)) return TriedVerdict::kTooCoarse;
-    if (finest_.known && !(tried.measured.metrics.energy_gained_j <= energy_max_j_))
+    if (finest_.known && tried.measured.metrics.energy_gained_j > energy_max_j_)
       return TriedVerdict::kGainsEnergy;
     if (finest_.known && !(tried.moved_m <= finest_.tolerance_m)) return TriedVerdict::kElsewhere;
     const bool slow =

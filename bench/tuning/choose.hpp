@@ -2,6 +2,7 @@
 
 #include <cstdint>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <string>
 #include <vector>
@@ -39,8 +40,10 @@ struct Tried {
   accuracy::Measured measured;  ///< Without sleep, so that rest shows its price.
   solver::Tuning tuning;        ///< The setting as the world has it.
   /// accuracy::position_error_m, of the scene as it runs or, if more, without sleep.
-  double error_m = 0.0;
-  double moved_m = 0.0;  ///< From where the finest settings take the bodies; see FinestRun.
+  double error_m = std::numeric_limits<double>::infinity();
+  /// From where the finest settings take the bodies, see FinestRun; nothing where they are not
+  /// known or the world faulted.
+  std::optional<double> moved_m;
   /// Of the scene as it runs, after the last tick: what `cycloid run` prints for it.
   std::uint64_t digest = 0;
   TriedVerdict verdict = TriedVerdict::kFaulted;

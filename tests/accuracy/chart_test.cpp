@@ -16,7 +16,7 @@ using testing::Not;
 static ChartPoint point_at(double rows, double error, bool failed = false) {
   ChartPoint point;
   point.measured.price.rows_per_tick = rows;
-  point.measured.metrics.penetration_steady_m.p95 = error;
+  point.measured.metrics.penetration_steady_m = Spread{error, error, error};
   point.failed = failed;
   return point;
 }

@@ -82,7 +82,8 @@ TEST(Measure, TwiceGivesTheSame) {
   EXPECT_EQ(a.digest, b.digest);
   EXPECT_EQ(a.metrics.natural_map, b.metrics.natural_map);
   EXPECT_EQ(a.metrics.velocity_error, b.metrics.velocity_error);
-  EXPECT_TRUE(same(a.metrics.penetration_steady_m, b.metrics.penetration_steady_m));
+  ASSERT_TRUE(a.metrics.penetration_steady_m && b.metrics.penetration_steady_m);
+  EXPECT_TRUE(same(*a.metrics.penetration_steady_m, *b.metrics.penetration_steady_m));
   EXPECT_EQ(a.price.rows_per_tick, b.price.rows_per_tick);
   EXPECT_NE(a.digest, measure(subject, published("pgs"), {}).digest);
 }
@@ -131,7 +132,7 @@ TEST(Measure, ConsistencyOfFreeFallIsTheErrorOfItsIntegrator) {
   ASSERT_TRUE(measured.metrics.consistency_m.has_value());
   EXPECT_NEAR(*measured.metrics.consistency_m, std::sqrt(squares / 60.0), 1e-4);
   EXPECT_LT(*measured.metrics.momentum_drift, 1e-5);
-  EXPECT_NEAR(measured.metrics.moved_m, 5.0, 0.05);
+  EXPECT_NEAR(*measured.metrics.moved_m, 5.0, 0.05);
 }
 
 static void push_beyond_all_bounds(solver::World<2>& world, std::uint32_t tick) {

@@ -123,11 +123,11 @@ void expect_alike(const char* trial) {
   const ChartPoint& rival = plan.scenes[0].points[1];
   const accuracy::Metrics& a = ours.measured.metrics;
   const accuracy::Metrics& b = rival.measured.metrics;
-  EXPECT_NEAR(a.penetration_steady_m.p95, b.penetration_steady_m.p95, 2e-6);
-  EXPECT_NEAR(a.penetration_transient_m.max, b.penetration_transient_m.max, 2e-6);
-  EXPECT_NEAR(a.energy_gained_j, b.energy_gained_j, 1e-3);
-  EXPECT_NEAR(a.jitter_m_s, b.jitter_m_s, 1e-5);
-  EXPECT_NEAR(a.moved_m, b.moved_m, 1e-5);
+  EXPECT_NEAR(a.penetration_steady_m->p95, b.penetration_steady_m->p95, 2e-6);
+  EXPECT_NEAR(a.penetration_transient_m->max, b.penetration_transient_m->max, 2e-6);
+  EXPECT_NEAR(*a.energy_gained_j, *b.energy_gained_j, 1e-3);
+  EXPECT_NEAR(*a.jitter_m_s, *b.jitter_m_s, 1e-5);
+  EXPECT_NEAR(*a.moved_m, *b.moved_m, 1e-5);
   EXPECT_EQ(ours.outcome->verdict, rival.outcome->verdict);
   EXPECT_NEAR(ours.outcome->value, rival.outcome->value, 1e-4);
   EXPECT_FALSE(b.natural_map) << "nobody knows its impulses";
