@@ -41,14 +41,18 @@ bool lacks_choice(const Scene& scene) {
   return states_accuracy(scene) && scene.accuracy.tuned.solver_version != solver::kSolverVersion;
 }
 
-solver::Tuning tuning_of(const Scene& scene) {
-  solver::Tuning tuning = scene.tuning;
-  if (!states_accuracy(scene)) return tuning;
-  solver::Tuning choice = scene.accuracy.tuned.tuning;
-  for_each_pair(tuning, choice, [](auto name, auto& to, const auto& from) {
-    if (is_of_method(name)) to = from;
+solver::Tuning solved_by(const solver::Tuning& scene, const solver::Tuning& method) {
+  solver::Tuning tuning = scene;
+  solver::Tuning from = method;
+  for_each_pair(tuning, from, [](auto name, auto& to, const auto& of_method) {
+    if (is_of_method(name)) to = of_method;
   });
   return tuning;
+}
+
+solver::Tuning tuning_of(const Scene& scene) {
+  return states_accuracy(scene) ? solved_by(scene.tuning, scene.accuracy.tuned.tuning)
+                                : scene.tuning;
 }
 
 std::string tuning_path(const Scene& scene, const std::string& field) {

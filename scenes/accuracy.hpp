@@ -21,8 +21,11 @@ bool lacks_choice(const Scene& scene);
 /// they bounce, and all of particles.
 bool is_of_method(std::string_view field);
 
-/// What the scene's world runs with: its tuning or, where it asks for an accuracy, that with the
-/// fields of a method from the stored choice.
+/// What one tuning says of how the scene is meant, with the method of another.
+solver::Tuning solved_by(const solver::Tuning& scene, const solver::Tuning& method);
+
+/// What the scene's world runs with: its tuning or, where it asks for an accuracy, that solved by
+/// the stored choice.
 solver::Tuning tuning_of(const Scene& scene);
 
 /// Where a field of that comes from, as the path of a mistake.

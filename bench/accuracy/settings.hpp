@@ -31,9 +31,9 @@ Setting published(const std::string& method);
 /// Whether the number changes anything: only soft methods have relax sweeps.
 bool has_relax_sweeps(const std::string& method);
 
-/// What a scene says of the world (thresholds, sleep, continuous collision) with this way to solve
-/// it. Position sweeps, of methods that have them, grow with the sweeps in the proportion in which
-/// the method is published, rounded up. @pre is_method(setting.method)
+/// `trials::with_method` with the setting's sweeps. Position sweeps, of methods that have them,
+/// grow with the sweeps in the proportion in which the method is published, rounded up.
+/// @pre is_method(setting.method)
 solver::Tuning tuning_of(const Setting& setting, const solver::Tuning& scene);
 
 /// The scene solved this way. @pre is_method(setting.method)

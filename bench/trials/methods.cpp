@@ -2,6 +2,8 @@
 
 #include <array>
 
+#include "scenes/accuracy.hpp"
+
 namespace cycloid::trials {
 
 using solver::Tuning;
@@ -43,13 +45,8 @@ std::span<const Method> methods() {
 }
 
 Tuning with_method(const Tuning& scene, const Tuning& method) {
-  Tuning tuning = method;
+  Tuning tuning = scenes::solved_by(scene, method);
   tuning.slop = scene.slop;
-  tuning.restitution_threshold = scene.restitution_threshold;
-  tuning.speculative_distance = scene.speculative_distance;
-  tuning.sleep_s = scene.sleep_s;
-  tuning.sleep_speed = scene.sleep_speed;
-  tuning.continuous = scene.continuous;
   return tuning;
 }
 

@@ -15,8 +15,8 @@ struct Method {
 /// Twelve of them, in the order of the columns of docs/stability.md.
 std::span<const Method> methods();
 
-/// What a scene says of the world (thresholds, sleep, continuous collision) with the method's way
-/// to solve it.
+/// What a scene says of the world (thresholds, sleep, continuous collision, particles) with the
+/// method's way to solve it; overlap that is left alone (slop) is the scene's too.
 solver::Tuning with_method(const solver::Tuning& scene, const solver::Tuning& method);
 
 }  // namespace cycloid::trials

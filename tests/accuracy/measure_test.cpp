@@ -48,9 +48,13 @@ TEST(Settings, KeepWhatTheSceneSaysOfItsWorld) {
   solver::Tuning scene;
   scene.slop = 0.001f;
   scene.continuous = 0;
+  scene.particle_substeps = 12;
+  scene.particle_damping = 0.5f;
   const solver::Tuning tuning = tuning_of({"ngs", 2, 16, 0}, scene);
   EXPECT_EQ(tuning.slop, 0.001f);
   EXPECT_EQ(tuning.continuous, 0u);
+  EXPECT_EQ(tuning.particle_substeps, 12u);
+  EXPECT_EQ(tuning.particle_damping, 0.5f);
   EXPECT_EQ(tuning.substeps, 2u);
   EXPECT_EQ(tuning.sweeps, 16u);
   EXPECT_EQ(tuning.position_sweeps, 6u) << "twice the published 8 sweeps and 3";
