@@ -77,11 +77,9 @@ class Run {
   std::optional<scenes::Simulation> simulation_;
 };
 
-/// Rows solved in the last step; those of the tree solver in each of its sweeps too.
-static double rows_of_step(const scenes::Simulation& run, const solver::Tuning& tuning) {
-  const solver::Statistics statistics = run.statistics();
-  const double direct = static_cast<double>(statistics.direct_rows) * tuning.substeps *
-                        (tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps);
+double rows_of_tick(const solver::Statistics& statistics, const solver::Tuning& tuning) {
+  const double direct =
+      static_cast<double>(statistics.direct_rows) * static_cast<double>(sweeps_per_tick(tuning));
   return static_cast<double>(statistics.rows) + direct;
 }
 
@@ -127,7 +125,7 @@ static Measured measure_in(const Subject& subject, const Setting& setting,
   for (std::uint32_t tick = 1; tick <= subject.ticks && measured.ended; ++tick) {
     measured.ended = run.step(tick) && observer.look(state_of<D>(run.simulation()), tick);
     if (!measured.ended) break;
-    rows += rows_of_step(run.simulation(), run.scene().tuning);
+    rows += rows_of_tick(run.simulation().statistics(), run.scene().tuning);
     ++ticks;
   }
   measured.metrics = observer.finish(state_of<D>(run.simulation()));

@@ -6,6 +6,7 @@
 #include "bench/accuracy/metrics.hpp"
 #include "bench/accuracy/settings.hpp"
 #include "bench/trials/course.hpp"
+#include "solver/world.hpp"
 
 namespace cycloid::accuracy {
 
@@ -38,6 +39,10 @@ struct Measured {
   Price price;
   std::uint64_t digest = 0;  ///< Of the last state.
 };
+
+/// Rows that a tick has solved; those of the tree solver in each of its sweeps too.
+/// @param tuning  what the world ran with.
+double rows_of_tick(const solver::Statistics& statistics, const solver::Tuning& tuning);
 
 /// Runs the subject once and measures every metric; nothing of it is timed. The same bits every
 /// time and on every machine, but for the metrics' last digits where libm is another.

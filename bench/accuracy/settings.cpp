@@ -51,6 +51,11 @@ solver::Tuning tuning_of(const Setting& setting, const solver::Tuning& scene) {
   return tuning;
 }
 
+std::uint64_t sweeps_per_tick(const solver::Tuning& tuning) {
+  return std::uint64_t{tuning.substeps} *
+         (tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps);
+}
+
 scenes::Scene with_setting(scenes::Scene scene, const Setting& setting) {
   scene.tuning = tuning_of(setting, scenes::tuning_of(scene));
   scene.accuracy = {};  // The choice that it stores would go before the setting.

@@ -36,6 +36,9 @@ bool has_relax_sweeps(const std::string& method);
 /// @pre is_method(setting.method)
 solver::Tuning tuning_of(const Setting& setting, const solver::Tuning& scene);
 
+/// Sweeps over the constraints in a tick, of all kinds.
+std::uint64_t sweeps_per_tick(const solver::Tuning& tuning);
+
 /// The scene solved this way. @pre is_method(setting.method)
 scenes::Scene with_setting(scenes::Scene scene, const Setting& setting);
 

@@ -6,6 +6,8 @@
 #include <map>
 #include <utility>
 
+#include "bench/accuracy/measure.hpp"
+#include "scenes/accuracy.hpp"
 #include "scenes/catalogue.hpp"
 
 namespace cycloid::tuning {
@@ -63,9 +65,15 @@ static std::vector<BodyPlace> places_of(const scenes::Simulation& simulation,
 
 Passage run_passage(const scenes::Scene& scene, std::uint32_t ticks) {
   scenes::Simulation simulation = started(scene);
+  const solver::Tuning tuning = scenes::tuning_of(scene);
+  const std::int64_t second_begin = std::int64_t{ticks} - std::lround(scene.tick_hz);
   Passage passage;
   passage.bodies = moving_bodies(simulation);
-  passage.looks.push_back(places_of(simulation, passage.bodies));
+  const auto look = [&](std::int64_t tick) {
+    passage.looks.push_back(places_of(simulation, passage.bodies));
+    if (tick > second_begin) ++passage.late_looks;
+  };
+  look(0);
   std::vector<scenes::SeatInput> inputs(static_cast<std::size_t>(simulation.seats()));
   for (std::uint32_t tick = 1; tick <= ticks && passage.ended; ++tick) {
     for (std::size_t seat = 0; seat < inputs.size(); ++seat)
@@ -74,11 +82,10 @@ Passage run_passage(const scenes::Scene& scene, std::uint32_t ticks) {
     if (!passage.ended) break;
     const solver::Statistics statistics = simulation.statistics();
     ++passage.ticks;
-    passage.rows_per_tick += static_cast<double>(statistics.rows);
+    passage.rows_per_tick += accuracy::rows_of_tick(statistics, tuning);
     passage.contact_rows_per_tick += statistics.turning_rows_per_sweep;
     passage.asleep_per_tick += statistics.asleep;
-    if (tick % kTicksPerLook == 0 || tick == ticks)
-      passage.looks.push_back(places_of(simulation, passage.bodies));
+    if (tick % kTicksPerLook == 0 || tick == ticks) look(tick);
   }
   const double made = std::max(1.0, static_cast<double>(passage.ticks));
   passage.rows_per_tick /= made;
@@ -89,15 +96,10 @@ Passage run_passage(const scenes::Scene& scene, std::uint32_t ticks) {
   return passage;
 }
 
-/// Looks that lie in the last second of a run at 60 ticks a second.
-static std::size_t late_looks(const Passage& passage) {
-  return std::min<std::size_t>(60 / kTicksPerLook, passage.looks.size());
-}
-
 /// The mean place in the last second; false where the body was taken away by then.
 static bool mean_place(const Passage& passage, std::size_t body, std::array<double, 3>& mean) {
   mean = {};
-  const std::size_t count = late_looks(passage);
+  const std::size_t count = passage.late_looks;
   for (std::size_t i = passage.looks.size() - count; i < passage.looks.size(); ++i) {
     const BodyPlace& place = passage.looks[i][body];
     if (!place.there) return false;

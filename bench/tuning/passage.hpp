@@ -1,6 +1,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <string>
 #include <vector>
@@ -36,7 +37,8 @@ struct Passage {
   std::uint64_t ticks = 0;
   std::vector<MovingBody> bodies;
   std::vector<std::vector<BodyPlace>> looks;  ///< Of every body, look by look; the start first.
-  double rows_per_tick = 0.0;
+  std::size_t late_looks = 0;          ///< How many of them, the last, lie in the last second.
+  double rows_per_tick = 0.0;          ///< As accuracy::rows_of_tick counts them.
   double contact_rows_per_tick = 0.0;  ///< Of contacts with an angular part, each counted once.
   double asleep_per_tick = 0.0;        ///< Bodies that were left alone.
   std::uint64_t state_bytes = 0;       ///< Of the state at the end, encoded.
