@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <array>
 #include <limits>
+#include <map>
+#include <string>
 #include <utility>
 
 #include "bench/tuning/asked_error.hpp"
@@ -83,13 +85,6 @@ class Chooser {
     return tried;
   }
 
-  /// Sweeps over the constraints in a tick.
-  std::uint64_t nominal_cost(const accuracy::Setting& setting) const {
-    const solver::Tuning tuning = accuracy::tuning_of(setting, subject_.scene.tuning);
-    return std::uint64_t{tuning.substeps} *
-           (tuning.sweeps + tuning.relax_sweeps + tuning.position_sweeps);
-  }
-
  private:
   TriedVerdict judge(const Tried& tried) const {
     if (!(tried.error_m <= request_.error_m)) return TriedVerdict::kTooCoarse;
@@ -123,17 +118,45 @@ std::vector<T> in_order_of(const std::vector<T>& unsorted, const Key& key) {
   return sorted;
 }
 
-std::vector<accuracy::Setting> in_order_of_sweeps(const Chooser& chooser,
-                                                  const TuneRequest& request) {
+std::uint64_t sweeps_of(const accuracy::Setting& setting) {
+  return accuracy::sweeps_per_tick(accuracy::tuning_of(setting, {}));
+}
+
+std::vector<accuracy::Setting> in_order_of_sweeps(const TuneRequest& request) {
   accuracy::GridLists lists = request.lists;
   const accuracy::GridLists usual = usual_lists();
   if (lists.substeps.empty()) lists.substeps = usual.substeps;
   if (lists.sweeps.empty()) lists.sweeps = usual.sweeps;
   if (lists.relax_sweeps.empty()) lists.relax_sweeps = usual.relax_sweeps;
-  const std::vector<accuracy::Setting> settings = accuracy::grid(lists);
-  return in_order_of<accuracy::Setting>(
-      settings, [&](const accuracy::Setting& setting) { return chooser.nominal_cost(setting); });
+  return in_order_of<accuracy::Setting>(accuracy::grid(lists), sweeps_of);
 }
+
+/// Of the fewest rows per sweep that a method has shown, what it may still come down to: more
+/// sweeps may lose contacts, and where islands are solved at once half of the substeps may be left
+/// out.
+constexpr double kRowsLeft = 0.5;
+
+/// What settings cost at least, by those of their method before.
+class LeastRows {
+ public:
+  void add(const Tried& tried) {
+    if (tried.verdict == TriedVerdict::kFaulted) return;
+    const accuracy::Setting& setting = tried.measured.setting;
+    const double per_sweep =
+        tried.measured.price.rows_per_tick / static_cast<double>(sweeps_of(setting));
+    const auto [fewest, is_new] = per_sweep_.emplace(setting.method, per_sweep);
+    if (!is_new) fewest->second = std::min(fewest->second, per_sweep);
+  }
+  /// 0 while nothing is known of the method.
+  double of(const accuracy::Setting& setting) const {
+    const auto fewest = per_sweep_.find(setting.method);
+    if (fewest == per_sweep_.end()) return 0.0;
+    return kRowsLeft * fewest->second * static_cast<double>(sweeps_of(setting));
+  }
+
+ private:
+  std::map<std::string, double> per_sweep_;
+};
 
 /// How far a setting is from what is asked for; of two the nearer has the less.
 std::pair<std::uint32_t, double> distance_from(const Tried& tried) {
@@ -177,16 +200,18 @@ accuracy::GridLists usual_lists() {
 TuneResult choose(const scenes::Scene& scene, const TuneRequest& request) {
   Chooser chooser(scene, request);
   TuneResult result;
-  const std::vector<accuracy::Setting> settings = in_order_of_sweeps(chooser, request);
+  const std::vector<accuracy::Setting> settings = in_order_of_sweeps(request);
   if (request.progress) request.progress(0, settings.size());
   result.finest = chooser.find_finest();
-  std::uint64_t bound = std::numeric_limits<std::uint64_t>::max();
+  LeastRows least_rows;
+  double best_rows = std::numeric_limits<double>::infinity();
   for (const accuracy::Setting& setting : settings) {
-    const std::uint64_t cost = chooser.nominal_cost(setting);
-    if (2 * cost > bound) break;
+    if (least_rows.of(setting) >= best_rows) continue;
     if (request.progress) request.progress(result.tried.size(), settings.size());
-    result.tried.push_back(chooser.try_one(setting));
-    if (result.tried.back().verdict == TriedVerdict::kMeets) bound = std::min(bound, 3 * cost);
+    const Tried& tried = result.tried.emplace_back(chooser.try_one(setting));
+    least_rows.add(tried);
+    if (tried.verdict == TriedVerdict::kMeets)
+      best_rows = std::min(best_rows, tried.measured.price.rows_per_tick);
   }
   result.tried = in_order_of<Tried>(result.tried, [](const Tried& tried) {
     return std::pair(tried.measured.price.rows_per_tick, tried.error_m);

@@ -80,8 +80,9 @@ accuracy::GridLists usual_lists();
 
 /// The cheapest setting that meets the request, by counted rows per tick: so that the same build
 /// chooses the same everywhere, unless there is a budget. Settings are tried in the order of their
-/// sweeps per tick, up to half as many again as the first that meets the request has, since a
-/// setting with fewer rows than it has no more than a few sweeps more.
+/// sweeps per tick, without those that would have as many rows as the best so far even with half
+/// as many per sweep as any tried one of their method. A cheaper one is missed only where it has
+/// fewer than that.
 ///
 /// It is the scene `as_tried` that is measured.
 /// @pre the scene has no mistake but that it lacks a choice; request.error_m > 0; all methods
