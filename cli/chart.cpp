@@ -12,6 +12,7 @@
 #include "cli/output.hpp"
 #include "cli/visible.hpp"
 #include "cli/whole_file.hpp"
+#include "solver/validate.hpp"
 
 namespace cycloid::cli {
 namespace {
@@ -86,6 +87,17 @@ void check_methods(const ChartOptions& options) {
   }
 }
 
+/// No world takes more sweeps than that, which would end the run at such a setting.
+void check_sweeps(const std::vector<accuracy::Setting>& settings) {
+  for (const accuracy::Setting& setting : settings) {
+    const std::uint64_t sweeps = accuracy::sweeps_per_tick(accuracy::tuning_of(setting, {}));
+    if (sweeps <= solver::kSweepsMax) continue;
+    throw Failure(kExitUsage, "--substeps, --sweeps, --relax: '" + name_of(setting) + "' makes " +
+                                  std::to_string(sweeps) + " sweeps in a tick; at most " +
+                                  std::to_string(solver::kSweepsMax) + " are allowed");
+  }
+}
+
 accuracy::ChartPlan make_plan(const ChartOptions& options) {
   check_methods(options);
   accuracy::ChartPlan plan;
@@ -95,6 +107,7 @@ accuracy::ChartPlan make_plan(const ChartOptions& options) {
     lists.sweeps = {1, 4};
   }
   plan.settings = accuracy::grid(lists);
+  check_sweeps(plan.settings);
   plan.repeats = options.quick ? std::min(options.repeats, 1u) : options.repeats;
   plan.measure.consistency = options.consistency;
   plan.measure.sleep = options.sleep;

@@ -114,6 +114,8 @@ TEST(ChartCommand, RefusesBadValuesAndNamesTheOption) {
       {{"stack-10", "--substeps", "1,0"}, "--substeps"},
       {{"stack-10", "--substeps", "65"}, "--substeps"},
       {{"stack-10", "--sweeps", "many"}, "--sweeps"},
+      {{"stack-10", "--methods", "pgs,soft-step", "--substeps", "1,64", "--sweeps", "1,128"},
+       "--substeps, --sweeps, --relax: 'soft-step 64x128+1' makes 8256 sweeps in a tick"},
       {{"stack-10", "--relax", "-1"}, "--relax"},
       {{"stack-10", "--ticks", "-1"}, "--ticks"},
       {{"stack-10", "--repeats", "x"}, "--repeats"},
