@@ -231,7 +231,7 @@ void add_chart(CLI::App& app, Action& action) {
   list("--sweeps", options->lists.sweeps, "Sweeps of a substep")->check(CLI::Range(1, 256));
   list("--relax", options->lists.relax_sweeps, "Relax sweeps; none: as the method is published")
       ->check(CLI::Range(0, 64));
-  list("--error", options->errors, "What is drawn, the first one in the tables too");
+  list("--error", options->errors, "What is drawn, the first one in the tables and fronts too");
   command->add_option("--ticks", options->ticks, "How many; 0: 300, or what a trial takes")
       ->capture_default_str()
       ->check(CLI::Range(0, 100000));

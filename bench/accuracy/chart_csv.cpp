@@ -93,7 +93,7 @@ static bool holds(const std::vector<std::size_t>& front, std::size_t index) {
   return std::find(front.begin(), front.end(), index) != front.end();
 }
 
-/// A chart's fronts of the first error, over rows and over time.
+/// A chart's fronts of one error, over rows and over time.
 struct Fronts {
   std::vector<std::size_t> rows;
   std::vector<std::size_t> time;
@@ -119,10 +119,9 @@ static CsvRow row_of(const SceneChart& chart, std::size_t index, const Fronts& f
   return row;
 }
 
-std::string chart_csv(const ChartPlan& plan, const ChartOrigin& origin) {
+std::string chart_csv(const ChartPlan& plan, const ErrorKind& error, const ChartOrigin& origin) {
   std::string text;
   for (const SceneChart& chart : plan.scenes) {
-    const ErrorKind& error = error_kinds().front();
     const Fronts fronts{pareto_front(chart, error, CostAxis::kRows),
                         pareto_front(chart, error, CostAxis::kTime)};
     for (std::size_t i = 0; i < chart.points.size(); ++i) {

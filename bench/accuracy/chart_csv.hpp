@@ -16,8 +16,8 @@ struct ChartOrigin {
 
 /// A line of names, then a line for each setting of each scene. An absent number is an empty field.
 /// What depends on the machine comes last: from the column "ns_per_tick" on. All before it is the
-/// same every time.
-std::string chart_csv(const ChartPlan& plan, const ChartOrigin& origin);
+/// same every time. The fronts are those of `error`.
+std::string chart_csv(const ChartPlan& plan, const ErrorKind& error, const ChartOrigin& origin);
 
 /// Markdown: for each scene the settings on the front of error against cost (`table_axis`), the
 /// cheapest first, what they cost and how wrong they are.

@@ -68,7 +68,7 @@ std::vector<std::string> write_chart_files(const ChartPlan& plan,
       hovers.push_back(drawn(chart, *error, FigureKind::kHover, still));
     }
   }
-  write(file_in(folder, files[0]), chart_csv(plan, origin));
+  write(file_in(folder, files[0]), chart_csv(plan, *errors.front(), origin));
   write(file_in(folder, files[1]), chart_page(plan, errors, hovers, origin));
   write(file_in(folder, files[2]), chart_markdown(plan, *errors.front(), origin));
   return files;

@@ -114,8 +114,8 @@ TEST(ChartCsv, IsTheSameTwiceAndHasAFieldForEachName) {
   ChartPlan b = plan_of("trial-stack-10", kFour);
   run_chart(a, [](const ChartProgress&) {});
   run_chart(b, [](const ChartProgress&) {});
-  const std::string text = chart_csv(a, kOrigin);
-  EXPECT_EQ(text, chart_csv(b, kOrigin));
+  const std::string text = chart_csv(a, error_kinds()[0], kOrigin);
+  EXPECT_EQ(text, chart_csv(b, error_kinds()[0], kOrigin));
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 5);
   EXPECT_THAT(text, HasSubstr("\"a \"\"machine\"\", 2 processors\",\"12\",\"abc\",2026-11-22\n"));
   const auto commas = [&](std::size_t from) {
@@ -131,6 +131,24 @@ TEST(ChartCsv, IsTheSameTwiceAndHasAFieldForEachName) {
   EXPECT_EQ(commas(0), commas(text.find('\n') + 1));
   EXPECT_EQ(text.find("ns_per_tick") + 11, text.find(",on_time_front"));
   EXPECT_THAT(chart_markdown(a, error_kinds()[0], kOrigin), HasSubstr("| ngs-block 4x4 | "));
+}
+
+/// Goal: the fronts of the file are those of the figure. Method: what is less wrong at the end is
+/// more wrong in between.
+TEST(ChartCsv, MarksTheFrontsOfTheErrorThatIsAskedFor) {
+  ChartPlan plan;
+  plan.scenes.push_back(chart_of({point_at(10, 0.5), point_at(20, 0.1)}));
+  plan.scenes[0].points[1].measured.metrics.penetration_transient_m.max = 0.2;
+  const auto marks_of = [&](const char* error) {
+    const std::string csv = chart_csv(plan, *find_error_kind(error), {"m", "12", "abc", "today"});
+    std::string marks;
+    for (std::size_t at = csv.find(",,0,\"m\""); at != std::string::npos;
+         at = csv.find(",,0,\"m\"", at + 1))
+      marks += csv[at - 1];
+    return marks;
+  };
+  EXPECT_EQ(marks_of("position"), "11");
+  EXPECT_EQ(marks_of("worst"), "10");
 }
 
 TEST(ChartFigure, DrawsHeldAndFailedSettingsAndTheFront) {
