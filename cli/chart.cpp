@@ -6,6 +6,7 @@
 #include <memory>
 
 #include "bench/accuracy/chart_files.hpp"
+#include "bench/figures/gnuplot.hpp"
 #include "bench/figures/machine.hpp"
 #include "cli/commands.hpp"
 #include "cli/files.hpp"
@@ -150,6 +151,14 @@ class ProgressBar {
   Clock::time_point begin_ = Clock::now();
 };
 
+/// Else it would be missed after the run.
+void check_gnuplot() {
+  if (!figures::has_gnuplot())
+    throw Failure(kExitIo,
+                  "gnuplot, which draws the figures, cannot be run; is the package gnuplot-nox "
+                  "installed?");
+}
+
 void make_folder(const std::string& folder) {
   std::error_code error;
   std::filesystem::create_directories(folder, error);
@@ -189,7 +198,9 @@ Json json_of(const accuracy::ChartPlan& plan, const accuracy::ErrorKind& error) 
 Exit run_chart_command(const ChartOptions& options, bool json) {
   const auto errors = chosen_errors(options);
   accuracy::ChartPlan plan = make_plan(options);
+  check_gnuplot();
   make_folder(options.out);
+  check_output(accuracy::chart_csv_file(options.out));
   ProgressBar bar;
   run_chart(plan, [&](const accuracy::ChartProgress& progress) { bar.tell(progress); });
   bar.end();
@@ -221,7 +232,10 @@ void add_chart(CLI::App& app, Action& action) {
       app, "chart", "Error against cost: scenes under every method and many settings", action);
   command->add_option("SCENE", options->scenes, "Catalogue names, scene files or names of trials")
       ->required();
-  command->add_option("--out", options->out, "Folder for chart.csv, chart.html and the figures")
+  command
+      ->add_option(
+          "--out", options->out,
+          "Folder for chart.csv, fronts.md, chart.html and the figures, which gnuplot draws")
       ->required();
   const auto list = [&](const char* name, auto& values, const char* help) {
     return command->add_option(name, values, help)->delimiter(',')->capture_default_str();

@@ -32,6 +32,10 @@ static std::string file_in(const std::string& folder, const std::string& name) {
   return (std::filesystem::path(folder) / name).string();
 }
 
+std::string chart_csv_file(const std::string& folder) {
+  return file_in(folder, "chart.csv");
+}
+
 void write_chart_text(const std::string& file, const std::string& text) {
   std::ofstream stream(file, std::ios::binary);
   stream << text << std::flush;
@@ -57,6 +61,8 @@ std::vector<std::string> write_chart_files(const ChartPlan& plan,
                                            const std::string& folder, const ChartOrigin& origin,
                                            const TextWriter& write) {
   std::vector<std::string> files = {"chart.csv", "chart.html", "fronts.md"};
+  write(chart_csv_file(folder), chart_csv(plan, *errors.front(), origin));
+  write(file_in(folder, files[2]), chart_markdown(plan, *errors.front(), origin));
   std::vector<std::string> hovers;
   std::set<std::string> stems;
   for (const SceneChart& chart : plan.scenes) {
@@ -68,9 +74,7 @@ std::vector<std::string> write_chart_files(const ChartPlan& plan,
       hovers.push_back(drawn(chart, *error, FigureKind::kHover, still));
     }
   }
-  write(file_in(folder, files[0]), chart_csv(plan, *errors.front(), origin));
   write(file_in(folder, files[1]), chart_page(plan, errors, hovers, origin));
-  write(file_in(folder, files[2]), chart_markdown(plan, *errors.front(), origin));
   return files;
 }
 

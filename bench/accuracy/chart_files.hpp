@@ -11,10 +11,14 @@ namespace cycloid::accuracy {
 using TextWriter = std::function<void(const std::string& file, const std::string& text)>;
 void write_chart_text(const std::string& file, const std::string& text);
 
-/// Draws the plan's scenes and writes them to a folder that is there: chart.csv, chart.html,
+/// Where the numbers go.
+std::string chart_csv_file(const std::string& folder);
+
+/// Writes the plan's scenes to a folder that is there and draws them: chart.csv, chart.html,
 /// fronts.md and SCENE-ERROR.svg for each scene and error; letters, digits, '-' and '_' of a
-/// scene's name are kept, as far as there is room. Throws std::runtime_error that names the file
-/// where one cannot be written, or gnuplot is missing.
+/// scene's name are kept, as far as there is room. Fronts of the CSV and of fronts.md are those of
+/// the first error. Throws std::runtime_error that names the file where one cannot be written, or
+/// gnuplot is missing; the numbers, chart.csv and fronts.md, are written before anything is drawn.
 /// @returns the names of the files.
 std::vector<std::string> write_chart_files(const ChartPlan& plan,
                                            const std::vector<const ErrorKind*>& errors,

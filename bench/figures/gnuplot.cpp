@@ -3,6 +3,7 @@
 #include <stdio.h>
 
 #include <algorithm>
+#include <cstdlib>
 #include <filesystem>
 #include <iomanip>
 #include <sstream>
@@ -45,6 +46,10 @@ std::string gnuplot_script(const experiments::Figure& figure, const std::string&
            << quoted(figure.curves[i].name);
   script << '\n';
   return script.str();
+}
+
+bool has_gnuplot() {
+  return std::system("gnuplot --version > /dev/null 2>&1") == 0;
 }
 
 std::string run_gnuplot(const std::string& script, const std::string& file) {

@@ -13,6 +13,9 @@ std::string gnuplot_script(const experiments::Figure& figure, const std::string&
 /// Text between quotes that gnuplot reads as it stands, with spaces for control characters.
 std::string quoted(const std::string& text);
 
+/// Whether a gnuplot is installed and runs.
+bool has_gnuplot();
+
 /// Runs a program that writes `file`, with the gnuplot that is installed.
 /// @returns "" or why it could not; then no half-drawn file is left.
 std::string run_gnuplot(const std::string& script, const std::string& file);

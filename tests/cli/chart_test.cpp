@@ -2,6 +2,7 @@
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
 
+#include <cstdlib>
 #include <sstream>
 
 #include "tests/cli/program.hpp"
@@ -101,6 +102,30 @@ TEST(ChartCommand, DrawsScenesOfNearlyOneNameIntoFilesOfTheirOwn) {
   const std::string stem = folder.file("out/") + std::string(100, 'x').replace(1, 1, "-");
   EXPECT_TRUE(std::filesystem::exists(stem + "-worst.svg"));
   EXPECT_TRUE(std::filesystem::exists(stem + "-2-worst.svg"));
+}
+
+/// Goal: numbers that took a run are not lost for a figure. Method: a folder where the figure would
+/// be; and no gnuplot to draw it.
+TEST(ChartCommand, KeepsItsNumbersWhereAFigureCannotBeWritten) {
+  const Folder folder;
+  const std::vector<std::string> arguments = {
+      "chart", "stack-10", "--methods", "pgs",       "--substeps", "1",     "--sweeps",
+      "1",     "--ticks",  "5",         "--repeats", "0",          "--out", folder.file("out")};
+  std::filesystem::create_directories(folder.file("out/stack-10-position.svg"));
+  const Ran ran = run_program(arguments);
+  EXPECT_EQ(ran.exit, 5);
+  EXPECT_THAT(ran.err, HasSubstr("stack-10-position.svg"));
+  EXPECT_THAT(read_text(folder.file("out/chart.csv")), HasSubstr("\"stack-10\",5,pgs,1,1,"));
+  EXPECT_THAT(read_text(folder.file("out/fronts.md")), HasSubstr("| pgs 1x1 |"));
+  std::vector<std::string> again = arguments;
+  again.back() = folder.file("other");
+  const std::string programs = std::getenv("PATH");
+  ::setenv("PATH", folder.path().c_str(), 1);
+  const Ran refused = run_program(again);
+  ::setenv("PATH", programs.c_str(), 1);
+  EXPECT_EQ(refused.exit, 5);
+  EXPECT_THAT(refused.err, HasSubstr("gnuplot-nox"));
+  EXPECT_FALSE(std::filesystem::exists(folder.file("other"))) << "said before the run";
 }
 
 TEST(ChartCommand, RefusesBadValuesAndNamesTheOption) {
