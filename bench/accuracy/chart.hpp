@@ -79,10 +79,11 @@ CostAxis table_axis(const SceneChart& chart);
 /// Rows of a tick against the depth to which it lets a heavy body sink into a light one, m.
 using Line = std::vector<std::pair<double, double>>;
 
-/// For a scene of two bodies, the upper one r times as heavy as the lower one on fixed ground, that
-/// fall straight: by so much sequential impulses that start from the last solution let it sink,
-/// g h^2 rho^K / (1 - rho^K) after K sweeps of one step, rho = r / (1 + r); g (h / s)^2 r after one
-/// sweep in each of s substeps. Nothing for other scenes. Derived from Gauss-Seidel's fixed point.
+/// For a scene of two bodies, the upper one r times as heavy as the lower one that lies on fixed
+/// ground from the first tick, one straight above the other: by so much sequential impulses that
+/// start from the last solution let it sink, g h^2 rho^K / (1 - rho^K) after K sweeps of one step,
+/// rho = r / (1 + r); g (h / s)^2 r after one sweep in each of s substeps. Nothing for other
+/// scenes. Derived from Gauss-Seidel's fixed point.
 struct ClosedForm {
   Line by_sweeps;
   Line by_substeps;

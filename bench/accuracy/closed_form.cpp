@@ -1,4 +1,7 @@
 #include <cmath>
+#include <cstdint>
+#include <utility>
+#include <vector>
 
 #include "bench/accuracy/chart.hpp"
 #include "scenes/catalogue.hpp"
@@ -8,19 +11,41 @@ namespace cycloid::accuracy {
 /// Centres may lie so far beside each other, m: they come with rounding.
 static constexpr float kAside_m = 1e-3f;
 
-/// The lower and the upper of exactly two bodies that fall onto something fixed; else nothing.
-static std::optional<std::pair<solver::Body<2>, solver::Body<2>>> two_bodies(
-    const solver::WorldState<2>& state) {
-  std::vector<solver::Body<2>> found;
-  for (const solver::Body<2>& body : state.bodies) {
-    if (body.kind == solver::BodyKind::kKinematic) return {};
-    if (body.kind == solver::BodyKind::kDynamic) found.push_back(body);
+/// Two bodies by their slots.
+struct Pile {
+  std::uint32_t lower = 0;
+  std::uint32_t upper = 0;
+};
+
+/// Of exactly two bodies that move, one right above the other; else nothing.
+static std::optional<Pile> two_bodies(const solver::WorldState<2>& state) {
+  std::vector<std::uint32_t> found;
+  for (std::uint32_t i = 0; i < state.bodies.size(); ++i) {
+    if (state.bodies[i].kind == solver::BodyKind::kKinematic) return {};
+    if (state.bodies[i].kind == solver::BodyKind::kDynamic) found.push_back(i);
   }
   if (found.size() != 2) return {};
-  const float aside = found[0].position[0] - found[1].position[0];
-  if (aside * aside > kAside_m * kAside_m) return {};
-  if (found[0].position[1] > found[1].position[1]) std::swap(found[0], found[1]);
-  return std::pair(found[0], found[1]);
+  const solver::Vec<2> apart = state.bodies[found[1]].position - state.bodies[found[0]].position;
+  if (apart[0] * apart[0] > kAside_m * kAside_m) return {};
+  if (apart[1] < 0.0f) std::swap(found[0], found[1]);
+  return Pile{found[0], found[1]};
+}
+
+/// Whether the lower one meets something fixed and the upper one the lower one alone.
+static bool lies_on_ground(const solver::WorldState<2>& state, const Pile& pile) {
+  bool on_ground = false;
+  bool on_lower = false;
+  for (const solver::Contact<2>& contact : state.contacts) {
+    if (contact.point_count == 0) continue;
+    const std::uint32_t a = state.shapes[contact.shape_a].body;
+    const std::uint32_t b = state.shapes[contact.shape_b].body;
+    const bool of_upper = a == pile.upper || b == pile.upper;
+    const bool of_lower = a == pile.lower || b == pile.lower;
+    if (of_upper && !of_lower) return false;
+    on_lower = on_lower || (of_upper && of_lower);
+    on_ground = on_ground || (of_lower && !of_upper);
+  }
+  return on_ground && on_lower;
 }
 
 std::optional<ClosedForm> closed_form(const Subject& subject) {
@@ -31,11 +56,12 @@ std::optional<ClosedForm> closed_form(const Subject& subject) {
   auto made = scenes::Simulation::create(with_setting(scene, Setting{}));
   if (!made.ok()) return {};
   scenes::Simulation& run = made.value();
-  const auto bodies = two_bodies(run.planar()->state());
-  if (!bodies || !run.step({}).ok()) return {};
+  const solver::WorldState<2>& state = run.planar()->state();
+  const auto pile = two_bodies(state);
+  if (!pile || !run.step({}).ok() || !lies_on_ground(state, *pile)) return {};
   const double rows = run.statistics().rows_per_sweep;
-  const double r =
-      static_cast<double>(bodies->second.mass) / static_cast<double>(bodies->first.mass);
+  const double r = static_cast<double>(state.bodies[pile->upper].mass) /
+                   static_cast<double>(state.bodies[pile->lower].mass);
   if (!(r > 1.0) || rows == 0.0) return {};
   const double h = 1.0 / static_cast<double>(scene.tick_hz);
   const double fallen = -static_cast<double>(scene.gravity[1]) * h * h;

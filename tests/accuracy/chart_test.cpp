@@ -194,6 +194,11 @@ TEST(ClosedFormLine, IsThatOfAHeavyBodyOnALightOne) {
   EXPECT_NEAR(hundred->by_sweeps[2].second, 0.068, 0.0005);
   EXPECT_NEAR(hundred->by_sweeps[0].second, hundred->by_substeps[0].second, 1e-9);
   EXPECT_FALSE(closed_form(subject("trial-stack-10")).has_value());
+  Subject falling = subject("trial-heavy-on-light-10");
+  std::erase_if(falling.scene.bodies, [](const scenes::SceneBody& body) {
+    return body.kind == solver::BodyKind::kStatic;
+  });
+  EXPECT_FALSE(closed_form(falling).has_value()) << "without ground";
   EXPECT_FALSE(closed_form(subject("trial-chain-100")).has_value());
   EXPECT_FALSE(closed_form(subject("trial-needle")).has_value());
 }
