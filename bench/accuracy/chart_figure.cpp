@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <set>
 #include <sstream>
 
 #include "bench/figures/gnuplot.hpp"
@@ -103,7 +104,7 @@ class ChartData {
 
   /// Those of one method. @returns how many, as `write_front` does.
   int write(const std::string& block, const std::string& method, bool failed,
-            std::ostream& script) const {
+            std::ostream& script) {
     int count = 0;
     script << block << " << END\n";
     for (const ChartPoint& point : chart_.points)
@@ -112,7 +113,7 @@ class ChartData {
     script << "END\n";
     return count;
   }
-  int write_front(const std::string& block, CostAxis axis, std::ostream& script) const {
+  int write_front(const std::string& block, CostAxis axis, std::ostream& script) {
     int count = 0;
     script << block << " << END\n";
     for (const std::size_t index : pareto_front(chart_, error_, axis))
@@ -120,16 +121,25 @@ class ChartData {
     script << "END\n";
     return count;
   }
+  /// What is drawn along the axis of rows, of us or of the error, each value once.
+  const std::set<std::string>& costs(CostAxis axis) const {
+    return axis == CostAxis::kRows ? rows_ : times_;
+  }
+  const std::set<std::string>& errors() const { return errors_; }
 
  private:
-  int write_point(const ChartPoint& point, std::ostream& script) const {
+  int write_point(const ChartPoint& point, std::ostream& script) {
     const std::optional<double> value = error_.of(point.measured);
     if (!value || std::isnan(*value)) return 0;
     double drawn = std::max(*value, kLeast);
     if (point.failed) drawn = std::min(drawn, 10.0 * std::max(highest_, kLeast));
     const double rows = point.measured.price.rows_per_tick;
-    script << (rows > 0.0 ? short_number(rows) : "NaN") << ' '
-           << short_number(1e-3 * point.measured.price.ns_per_tick) << ' ' << short_number(drawn);
+    const double us = 1e-3 * point.measured.price.ns_per_tick;
+    if (rows > 0.0) rows_.insert(short_number(rows));
+    if (us > 0.0) times_.insert(short_number(us));
+    errors_.insert(short_number(drawn));
+    script << (rows > 0.0 ? short_number(rows) : "NaN") << ' ' << short_number(us) << ' '
+           << short_number(drawn);
     if (kind_ == FigureKind::kHover) script << " \"" << label_of(point, *value) << '"';
     script << '\n';
     return 1;
@@ -139,6 +149,9 @@ class ChartData {
   const ErrorKind& error_;
   FigureKind kind_;
   double highest_ = 0.0;
+  std::set<std::string> rows_;
+  std::set<std::string> times_;
+  std::set<std::string> errors_;
 };
 
 /// What a panel draws, one after the other.
@@ -179,7 +192,7 @@ static void write_head(const SceneChart& chart, const ErrorKind& error, FigureKi
 
 /// Writes the marks of every method and adds them to the panels.
 /// @returns what the key says of them.
-static std::string add_marks(const SceneChart& chart, const ChartData& data, Plot (&panels)[2],
+static std::string add_marks(const SceneChart& chart, ChartData& data, Plot (&panels)[2],
                              std::ostream& script) {
   const std::vector<std::string> methods = methods_of(chart);
   const std::vector<MarkStyle> styles = styles_of(methods);
@@ -199,7 +212,7 @@ static std::string add_marks(const SceneChart& chart, const ChartData& data, Plo
   return keys;
 }
 
-static void add_fronts(const ChartData& data, Plot (&panels)[2], std::ostream& script) {
+static void add_fronts(ChartData& data, Plot (&panels)[2], std::ostream& script) {
   const CostAxis axes[2] = {CostAxis::kRows, CostAxis::kTime};
   for (int i = 0; i < 2; ++i) {
     const std::string block = "$front" + std::to_string(i);
@@ -222,11 +235,18 @@ static bool add_closed_form(const SceneChart& chart, const ErrorKind& error, Plo
   return true;
 }
 
+/// Of one value alone gnuplot makes no axis without a warning: it gets room to both sides.
+static std::string range_of(const char* axis, const std::set<std::string>& values) {
+  if (values.size() != 1) return std::string("set autoscale ") + axis + '\n';
+  const std::string& value = *values.begin();
+  return std::string("set ") + axis + "range [0.5*" + value + ":2*" + value + "]\n";
+}
+
 std::string chart_script(const SceneChart& chart, const ErrorKind& error, FigureKind kind,
                          const std::string& svg_file) {
   std::ostringstream script;
   write_head(chart, error, kind, svg_file, script);
-  const ChartData data(chart, error, kind);
+  ChartData data(chart, error, kind);
   Plot panels[2] = {Plot(kind), Plot(kind)};
   const std::string keys = add_marks(chart, data, panels, script);
   add_fronts(data, panels, script);
@@ -239,6 +259,8 @@ std::string chart_script(const SceneChart& chart, const ErrorKind& error, Figure
                : rows && lines ? "set key top right\n"
                                : "set key off\n")
            << "set xlabel '" << (rows ? "rows a tick" : "us a tick") << "'\n"
+           << (rows && lines ? "set autoscale xy\n"
+                             : range_of("x", data.costs(axes[i])) + range_of("y", data.errors()))
            << panels[rows ? 0 : 1].text() << (last ? keys : "") << "\nunset ylabel\n";
   }
   script << "unset multiplot\n";

@@ -168,6 +168,16 @@ TEST(ChartFigure, DrawsHeldAndFailedSettingsAndTheFront) {
   EXPECT_THAT(hover, HasSubstr("\\nstands"));
 }
 
+// gnuplot warns of an axis with one value on it.
+TEST(ChartFigure, GivesASingleValueRoom) {
+  const SceneChart one = chart_of({point_at(40, 0.0)});
+  const std::string single = chart_script(one, error_kinds()[0], FigureKind::kStill, "a.svg");
+  EXPECT_THAT(single, HasSubstr("set xrange [0.5*40:2*40]\nset yrange [0.5*1e-07:2*1e-07]\n"));
+  const SceneChart two = chart_of({point_at(40, 0.1), point_at(50, 0.1)});
+  const std::string line = chart_script(two, error_kinds()[0], FigureKind::kStill, "a.svg");
+  EXPECT_THAT(line, HasSubstr("set autoscale x\nset yrange [0.5*0.1:2*0.1]\n"));
+}
+
 TEST(ChartPage, NeedsNothingElse) {
   ChartPlan plan = plan_of("trial-stack-10", kFour);
   run_chart(plan, [](const ChartProgress&) {});
