@@ -1,5 +1,6 @@
 #include <unistd.h>
 
+#include <algorithm>
 #include <chrono>
 #include <filesystem>
 #include <iostream>
@@ -53,6 +54,7 @@ accuracy::SceneChart open_chart(const std::string& what, const ChartOptions& opt
   else
     chart.subject = {load_scene(what), kTicksDefault, nullptr};
   chart.name = chart.subject.scene.name;
+  if (chart.name.empty()) chart.name = std::filesystem::path(what).stem().string();
   // The judge of a trial knows when it is over; fewer ticks would judge another scene.
   if (options.ticks != 0) chart.subject.ticks = options.ticks;
   if (options.quick && !chart.trial)
@@ -67,7 +69,7 @@ std::vector<const accuracy::ErrorKind*> chosen_errors(const ChartOptions& option
   for (const std::string& name : options.errors) {
     const accuracy::ErrorKind* kind = accuracy::find_error_kind(name);
     if (kind != nullptr) {
-      errors.push_back(kind);
+      if (std::find(errors.begin(), errors.end(), kind) == errors.end()) errors.push_back(kind);
       continue;
     }
     std::string known;

@@ -71,6 +71,21 @@ TEST(ChartCommand, TakesNamesAndFiles) {
   EXPECT_EQ(texts[0], texts[1]) << "nothing is timed, so all is the same";
 }
 
+TEST(ChartCommand, CallsScenesWithoutANameAsTheirFilesAndDrawsEachErrorOnce) {
+  const Folder folder;
+  nlohmann::json scene = nlohmann::json::parse(run_program({"scene", "export", "stack-10"}).out);
+  scene["name"] = "";
+  for (const char* name : {"one.json", "two.json"}) write_text(folder.file(name), scene.dump());
+  const Ran ran =
+      run_program({"chart", folder.file("one.json"), folder.file("two.json"), "--out",
+                   folder.file("out"), "--methods", "pgs", "--substeps", "1", "--sweeps", "1",
+                   "--error", "worst,worst", "--ticks", "5", "--repeats", "0", "--json"});
+  ASSERT_EQ(ran.exit, 0) << ran.err;
+  EXPECT_EQ(ran.err, "") << "gnuplot has nothing to warn of";
+  EXPECT_THAT(ran.json()["files"], testing::ElementsAre("chart.csv", "chart.html", "fronts.md",
+                                                        "one-worst.svg", "two-worst.svg"));
+}
+
 /// Goal: what a scene calls itself is text and nothing else. Method: a name that would be a command
 /// of gnuplot's, a tag of the page and the end of a cell.
 TEST(ChartCommand, NamesOfScenesAreTextAlone) {
