@@ -37,6 +37,10 @@ if(CYCLOID_NETWORK)
   install(DIRECTORY ${PROJECT_SOURCE_DIR}/client/replica
     DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/cycloid/client FILES_MATCHING PATTERN "*.hpp")
   install(FILES ${PROJECT_SOURCE_DIR}/client/c/cycloid.h DESTINATION ${CMAKE_INSTALL_INCLUDEDIR})
+  # The library folder may lie more than one level deep: lib/x86_64-linux-gnu.
+  cmake_path(RELATIVE_PATH CMAKE_INSTALL_PREFIX
+    BASE_DIRECTORY ${CMAKE_INSTALL_FULL_LIBDIR}/pkgconfig
+    OUTPUT_VARIABLE CYCLOID_PREFIX_FROM_PKGCONFIG)
   configure_file(${PROJECT_SOURCE_DIR}/client/c/cycloid.pc.in
     ${CMAKE_CURRENT_BINARY_DIR}/cycloid.pc @ONLY)
   install(FILES ${CMAKE_CURRENT_BINARY_DIR}/cycloid.pc
