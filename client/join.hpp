@@ -41,7 +41,8 @@ struct JoinOptions {
   std::chrono::milliseconds silence{10000};
   /// Asked about every 50 ms, on the thread of `join`; true makes it leave.
   std::function<bool()> should_stop;
-  /// Told whenever messages were taken in or ticks predicted, such as to draw the state.
+  /// Told whenever messages were taken in or ticks predicted, such as to draw the state. On every
+  /// connection from its first state on: while one loads, what was drawn last stands.
   std::function<void(Follower&)> on_progress;
   /// Told each welcome, such as to keep its resume token.
   std::function<void(const protocol::Welcome&)> on_welcome;

@@ -38,7 +38,7 @@ class Visit {
   /// What brings the seat back, once; empty where the server gave none.
   const std::vector<std::byte>& resume() const { return resume_; }
   /// Of the connection there is now, or was last. Null where the options have a mistake or the
-  /// scene cannot run.
+  /// scene cannot run. No state to show until its progress has begun.
   Follower* follower();
   const Follower* follower() const;
 

@@ -107,16 +107,11 @@ void note_frame(cycloid_client& to, const protocol::InputFrame& frame) {
     to.add(CYCLOID_EVENT_INPUT_DELAY, frame.tick, 0, change.value);
 }
 
-/// Of the poses to show.
-std::uint64_t shown_tick(const client::Follower& follower) {
-  return std::max(follower.progress().last_tick, follower.simulation().tick());
-}
-
 /// The state to show, and the bodies that came and went since the one before.
 void note_bodies(cycloid_client& to, const client::Follower& follower) {
-  to.poses = follower.poses();
-  to.states.add(shown_tick(follower), to.poses);
   const std::uint64_t tick = follower.progress().last_tick;
+  to.poses = follower.poses();
+  to.states.add(std::max(tick, follower.simulation().tick()), to.poses);
   for (const client::BodyChange& change : to.bodies.compare(to.poses)) {
     to.add(change.created ? CYCLOID_EVENT_BODY_CREATED : CYCLOID_EVENT_BODY_DESTROYED, tick,
            change.index, change.generation);
@@ -161,7 +156,8 @@ std::uint32_t phase_of(const client::Visit& visit) {
   }
 }
 
-cycloid_client_state state_of(const client::Visit& visit) {
+cycloid_client_state state_of(const cycloid_client& of) {
+  const client::Visit& visit = *of.visit;
   const client::JoinReport report = visit.report();
   const client::Progress& progress = report.progress;
   cycloid_client_state state{};
@@ -175,8 +171,7 @@ cycloid_client_state state_of(const client::Visit& visit) {
   const client::Follower* follower = visit.follower();
   state.tick_rate_millihertz = follower == nullptr ? 0 : follower->tick_rate_millihertz();
   state.tick = progress.last_tick;
-  state.predicted_tick = progress.last_tick;
-  if (follower != nullptr) state.predicted_tick = std::max(state.tick, shown_tick(*follower));
+  state.predicted_tick = std::max(state.tick, of.states.newest_tick());
   state.digest = report.final_digest;
   state.frames = progress.frames;
   state.digests_compared = progress.digests_compared;
@@ -267,7 +262,7 @@ cycloid_status cycloid_client_read_state(const cycloid_client* client, cycloid_c
     cycloid_client_state state{};
     state.struct_bytes = sizeof(state);
     state.seat = CYCLOID_SPECTATOR;
-    if (client->visit != nullptr) state = state_of(*client->visit);
+    if (client->visit != nullptr) state = state_of(*client);
     client::copy_known(state, *out);
     return cycloid_status{CYCLOID_OK};
   });

@@ -194,7 +194,8 @@ CYCLOID_API uint32_t cycloid_client_reason(const cycloid_client* client, char* t
  * where the server gave none. */
 CYCLOID_API cycloid_status cycloid_client_read_resume(const cycloid_client* client, uint8_t* bytes,
                                                       uint32_t capacity, uint32_t* count);
-/* The state to show: the predicted one where there are predictions. */
+/* The state to show: the predicted one where there are predictions. No poses until there was a
+ * state; while another connection loads, those that were shown last. */
 CYCLOID_API cycloid_status cycloid_client_read_poses(const cycloid_client* client,
                                                      cycloid_pose* poses, uint32_t capacity,
                                                      uint32_t* count);
@@ -202,7 +203,7 @@ CYCLOID_API cycloid_status cycloid_client_read_poses(const cycloid_client* clien
 /* The same at a time in ticks, such as 61.25: between two states that were shown, straight on for a
  * few ticks beyond the newest, which is of `predicted_tick`. To draw at any rate, go back from that
  * by the ticks that lie between two states (1 in lockstep) and on by the clock of the engine. For
- * pictures alone: never the state itself. No poses where there is no state yet. Since version 2. */
+ * pictures alone: never the state itself. No poses until there was a state. Since version 2. */
 CYCLOID_API cycloid_status cycloid_client_read_poses_at(const cycloid_client* client, double tick,
                                                         cycloid_pose* poses, uint32_t capacity,
                                                         uint32_t* count);

@@ -107,11 +107,14 @@ void Visit::Attempt::receive(const protocol::ServerMessage& message) {
   }
 }
 
-/// Brings predictions up to all that was taken in and to the clock, then shows it.
+/// Brings predictions up to all that was taken in and to the clock, then shows it. Until the
+/// server's first state is whole there is only the world as it was built, or as another connection
+/// left it.
 void Visit::Attempt::react() {
   if (heard_) follower_->settle();
   const bool advanced = advance();
-  if ((heard_ || advanced) && options_.on_progress) options_.on_progress(*follower_);
+  const bool shows = (heard_ || advanced) && follower_->progress().begun();
+  if (shows && options_.on_progress) options_.on_progress(*follower_);
   heard_ = false;
 }
 

@@ -43,7 +43,8 @@ class Follower {
   bool welcomed() const { return welcomed_; }
   const protocol::Welcome& welcome() const { return welcome_; }
   /// The state to show: the predicted one where there are predictions. Of a snapshot client with
-  /// the quantised profile it is the last exact one; see `poses`.
+  /// the quantised profile it is the last exact one; see `poses`. Until progress().begun() it is
+  /// what was handed over, and nothing to show.
   const scenes::Simulation& simulation() const { return simulation_; }
   /// For a host that disturbs its own world, such as a test of recovery.
   scenes::Simulation& simulation() { return simulation_; }

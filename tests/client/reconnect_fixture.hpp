@@ -118,6 +118,19 @@ class Reconnect : public testing::Test {
     peer.tell(authority_.snapshot());
     for (int i = 0; i < ticks; ++i) peer.tell(authority_.frame());
   }
+  /// Lets the client in, and tells it its state in parts: before the last one `wait` is called,
+  /// while the client loads.
+  void welcome_in_parts(Peer& peer, const std::function<void()>& wait) {
+    protocol::Welcome welcome = authority_.welcome(1);
+    welcome.resume = resume_token(1);
+    peer.tell(welcome);
+    const auto parts = parts_of(authority_.snapshot());
+    ASSERT_GT(parts.size(), 1u);
+    for (const protocol::SnapshotPart& part : parts) {
+      if (&part == &parts.back()) wait();
+      peer.tell(part);
+    }
+  }
   /// Lets the client in, shows it some ticks, and hangs up once all was heard.
   Script hang_up_after(int ticks) {
     return [this, ticks](Peer& peer, const protocol::Hello&) {
