@@ -87,8 +87,9 @@ CYCLOID_API cycloid_status cycloid_simulation_save(const cycloid_simulation* sim
 CYCLOID_API cycloid_status cycloid_simulation_restore(cycloid_simulation* simulation,
                                                       const cycloid_saved* saved);
 CYCLOID_API void cycloid_saved_destroy(cycloid_saved* saved);
-/* The exact state as bytes that travel and keep. `*count` becomes how many bytes or poses there
- * are, also where `capacity` is too small and nothing is written. */
+/* The exact state as bytes that travel and keep. The scene's digest comes first, by which decode
+ * knows bytes of another scene. `*count` becomes how many bytes or poses there are, also where
+ * `capacity` is too small and nothing is written. */
 CYCLOID_API cycloid_status cycloid_simulation_encode(const cycloid_simulation* simulation,
                                                      uint8_t* bytes, uint32_t capacity,
                                                      uint32_t* count);

@@ -2,6 +2,7 @@
 #include <utility>
 
 #include "client/c/guard.hpp"
+#include "protocol/little_endian.hpp"
 #include "scenes/catalogue.hpp"
 
 using namespace cycloid;
@@ -139,9 +140,13 @@ cycloid_status cycloid_simulation_encode(const cycloid_simulation* simulation, u
                                          uint32_t capacity, uint32_t* count) {
   if (simulation == nullptr) return failed(CYCLOID_INVALID, "simulation: null");
   return guarded([&] {
-    std::vector<std::byte> encoded;
-    simulation->simulation.encode(encoded);
-    return client::copy_out(encoded, bytes, capacity, count);
+    std::vector<std::byte> state;
+    simulation->simulation.encode(state);
+    std::vector<std::byte> all;
+    all.reserve(sizeof(simulation->scene_digest) + state.size());
+    protocol::append_little(simulation->scene_digest, all);
+    all.insert(all.end(), state.begin(), state.end());
+    return client::copy_out(all, bytes, capacity, count);
   });
 }
 
@@ -150,8 +155,12 @@ cycloid_status cycloid_simulation_decode(cycloid_simulation* simulation, const u
   if (simulation == nullptr) return failed(CYCLOID_INVALID, "simulation: null");
   if (bytes == nullptr) return failed(CYCLOID_INVALID, "bytes: null");
   return guarded([&] {
-    const std::span<const uint8_t> all(bytes, count);
-    const solver::Error error = simulation->simulation.decode(std::as_bytes(all));
+    protocol::LittleReader reader{std::as_bytes(std::span(bytes, count))};
+    const auto scene_digest = reader.take<std::uint64_t>();
+    if (reader.failed) return failed(CYCLOID_STEP, "bytes: no state");
+    if (scene_digest != simulation->scene_digest)
+      return failed(CYCLOID_STEP, "bytes: of another scene");
+    const solver::Error error = simulation->simulation.decode(reader.bytes);
     if (error.ok()) return cycloid_status{CYCLOID_OK};
     return failed(CYCLOID_STEP, std::string(solver::code_name(error.code)) + " " + error.field);
   });

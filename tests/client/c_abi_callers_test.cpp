@@ -175,6 +175,22 @@ TEST(CAbiCallers, InputsOfUnequalOrTooSmallSizesAreRefused) {
   EXPECT_EQ(cycloid_simulation_digest(world.get()), digest);
 }
 
+TEST(CAbiCallers, BytesOfAnotherScenesStateAreRefusedAndChangeNothing) {
+  const Offline arch = offline("arch-3d");
+  const Offline wall = offline("wall");
+  std::uint32_t count = 0;
+  EXPECT_EQ(cycloid_simulation_encode(wall.get(), nullptr, 0, &count), CYCLOID_BUFFER);
+  std::vector<std::uint8_t> bytes(count);
+  ASSERT_EQ(cycloid_simulation_encode(wall.get(), bytes.data(), count, &count), CYCLOID_OK);
+  const std::uint64_t digest = cycloid_simulation_digest(arch.get());
+  EXPECT_EQ(cycloid_simulation_decode(arch.get(), bytes.data(), count), CYCLOID_STEP);
+  EXPECT_EQ(reason_of_last(), "bytes: of another scene");
+  EXPECT_EQ(cycloid_simulation_digest(arch.get()), digest);
+  EXPECT_EQ(cycloid_simulation_decode(wall.get(), bytes.data(), count), CYCLOID_OK);
+  for (const std::uint32_t cut : {0u, 7u, 8u, count - 1})
+    EXPECT_EQ(cycloid_simulation_decode(wall.get(), bytes.data(), cut), CYCLOID_STEP) << cut;
+}
+
 TEST(CAbiCallers, AreToldThatThereIsNoMemory) {
   const Player client = player(1);
   cycloid_simulation* world = nullptr;
