@@ -127,11 +127,17 @@ solver::Error Simulation::step(std::span<const SeatInput> inputs) {
   return error;
 }
 
-solver::Error Simulation::step_once(std::span<const SeatInput> inputs) {
-  if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
-  // Before the controls, which compute too.
+/// What refuses a step before the controls, which compute too.
+static solver::Error check_step(const Simulation& of, std::span<const SeatInput> inputs) {
+  if (inputs.size() != static_cast<std::size_t>(of.seats()))
+    return {solver::Code::kInvalid, "inputs"};
   if (!solver::floating_point_mode_is_ieee())
     return {solver::Code::kInvalid, "floating_point_mode"};
+  return {};
+}
+
+solver::Error Simulation::step_once(std::span<const SeatInput> inputs) {
+  if (const solver::Error error = check_step(*this, inputs); !error.ok()) return error;
   return running_->visit([&](auto& built) {
     if (!built.world.fault()) apply_controls(built, inputs);
     return built.world.step();
@@ -139,7 +145,7 @@ solver::Error Simulation::step_once(std::span<const SeatInput> inputs) {
 }
 
 solver::Error Simulation::step_traced(std::span<const SeatInput> inputs, solver::StepTrace& trace) {
-  if (inputs.size() != static_cast<std::size_t>(seats())) return {solver::Code::kInvalid, "inputs"};
+  if (const solver::Error error = check_step(*this, inputs); !error.ok()) return error;
   return running_->visit([&](auto& built) {
     if (!built.world.fault()) apply_controls(built, inputs);
     return built.world.step_traced(trace);

@@ -81,9 +81,11 @@ class Simulation {
   void set_lot_contacts(std::uint32_t contacts);
 
   /// Applies the controls of every seat, in seat order, then steps once.
-  /// @pre inputs.size() == seats(); otherwise kInvalid "inputs" and nothing has changed.
+  /// @pre inputs.size() == seats(); otherwise kInvalid "inputs" and nothing has changed. Nor has it
+  /// where this thread computes otherwise: kInvalid "floating_point_mode".
   solver::Error step(std::span<const SeatInput> inputs);
-  /// `step`, with what every phase has left; see solver/trace.hpp. Changes no bit.
+  /// `step`, with what every phase has left, and refuses as it does; see solver/trace.hpp. Changes
+  /// no bit.
   solver::Error step_traced(std::span<const SeatInput> inputs, solver::StepTrace& trace);
   /// Adds the state as it is now to the phases of the trace.
   void trace_state(solver::StepTrace& trace) const;

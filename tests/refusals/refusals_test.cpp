@@ -9,6 +9,7 @@
 #include "scenes/catalogue.hpp"
 #include "scenes/simulation.hpp"
 #include "solver/floating_point_mode.hpp"
+#include "solver/trace.hpp"
 #include "solver/world.hpp"
 #include "tests/places.hpp"
 #include "tests/refusals/reordering_user.hpp"
@@ -117,6 +118,24 @@ TEST(Refusals, PoolMadeBeforeGoesOnAsItWasWhenTheThreadIsMended) {
     ASSERT_TRUE(alone.value().step(inputs).ok());
     EXPECT_EQ(pooled.value().digest(), alone.value().digest()) << "tick " << tick;
   }
+}
+
+TEST(Refusals, StepOfASceneThatIsTracedIsRefusedBeforeItsControls) {
+  const ModeKept mode;
+  auto created = scenes::Simulation::create(*scenes::find("half-pipe").scene);
+  ASSERT_TRUE(created.ok());
+  scenes::Simulation& simulation = created.value();
+  std::vector<scenes::SeatInput> inputs(static_cast<std::size_t>(simulation.seats()));
+  for (scenes::SeatInput& input : inputs) input = {{32767, 32767, 32767, 32767}, 0xffff};
+  const std::uint64_t digest = simulation.digest();
+  StepTrace trace;
+  load_flushing_library();
+  EXPECT_STREQ(simulation.step_traced(inputs, trace).field, "floating_point_mode");
+  EXPECT_STREQ(simulation.step(inputs).field, "floating_point_mode");
+  mode.back();
+  EXPECT_EQ(simulation.digest(), digest);
+  EXPECT_TRUE(simulation.step_traced(inputs, trace).ok());
+  EXPECT_NE(simulation.digest(), digest);
 }
 
 TEST(Refusals, CallerWhoseFlagsReorderSumsIsSeenWhenAWorldIsMade) {
