@@ -17,7 +17,7 @@ namespace peers = cycloid::peers;
 namespace scenes = cycloid::scenes;
 namespace solver = cycloid::solver;
 
-std::vector<char> buffer;  ///< What the caller writes: JSON, or poses as floats.
+std::vector<char> buffer;  ///< What goes in and comes out: JSON, or poses as floats.
 std::vector<std::optional<scenes::Simulation>> simulations;
 std::optional<scenes::Simulation> reference;  ///< The ruler's scene, at tick 0.
 peers::Accuracy measured;
@@ -26,6 +26,7 @@ peers::Accuracy measured;
 template <int D>
 solver::Pose<D> told_pose(const solver::WorldState<D>& state, std::uint32_t body) {
   float values[7];
+  if (sizeof values * (body + std::size_t{1}) > buffer.size()) std::abort();
   std::memcpy(values, buffer.data() + sizeof values * body, sizeof values);
   solver::Pose<D> pose;
   for (int i = 0; i < D; ++i) pose.position[i] = values[i];
@@ -57,11 +58,20 @@ void write_twists(const std::vector<solver::BodyView<D>>& bodies) {
 }
 
 std::optional<scenes::Simulation> simulation_of(std::size_t bytes) {
+  if (bytes > buffer.size()) std::abort();
   const scenes::Loaded loaded = scenes::from_json(std::string_view(buffer.data(), bytes));
   if (!loaded.scene) return std::nullopt;
   auto created = scenes::Simulation::create(*loaded.scene);
   if (!created.ok()) return std::nullopt;
   return std::move(created.value());
+}
+
+/// Where a world is, if the number is one's that was made and not destroyed; else a trap, for there
+/// is nothing that a call could do then.
+std::optional<scenes::Simulation>& place_of(int world) {
+  const auto place = static_cast<std::size_t>(world);
+  if (place >= simulations.size() || !simulations[place]) std::abort();
+  return simulations[place];
 }
 
 }  // namespace
@@ -76,13 +86,15 @@ void* __cxa_allocate_exception(std::size_t bytes) noexcept {
   std::abort();
 }
 
-/// Memory of at least so many bytes to write to; what was there before is gone.
+/// The buffer, of so many bytes from now on: those that it held stay, as far as they fit. Where it
+/// lies holds until the next call of this, `poses` or `motions`.
 __attribute__((export_name("buffer"))) char* module_buffer(std::size_t bytes) {
   buffer.resize(bytes);
   return buffer.data();
 }
 
-/// A world of the scene whose JSON the buffer holds: its number, or -1 where that is no scene.
+/// A world of the scene whose JSON is the first `bytes` of the buffer: its number, or -1 where the
+/// JSON is no scene that runs. Text that is no JSON, and more bytes than there are, are traps.
 __attribute__((export_name("create"))) int module_create(std::size_t bytes) {
   auto made = simulation_of(bytes);
   if (!made) return -1;
@@ -90,22 +102,23 @@ __attribute__((export_name("create"))) int module_create(std::size_t bytes) {
   return static_cast<int>(simulations.size()) - 1;
 }
 
+/// Here and below, a number that is no world's is a trap.
 __attribute__((export_name("destroy"))) void module_destroy(int world) {
-  simulations[static_cast<std::size_t>(world)].reset();
+  place_of(world).reset();
 }
 
 /// One tick of a scene without seats; 0, or 1 where the world refuses.
 __attribute__((export_name("step"))) int module_step(int world) {
-  return simulations[static_cast<std::size_t>(world)]->step({}).ok() ? 0 : 1;
+  return place_of(world)->step({}).ok() ? 0 : 1;
 }
 
 __attribute__((export_name("digest"))) std::uint64_t module_digest(int world) {
-  return simulations[static_cast<std::size_t>(world)]->digest();
+  return place_of(world)->digest();
 }
 
 /// Writes the poses of all bodies to the buffer, in their order; returns how many there are.
 __attribute__((export_name("poses"))) std::size_t module_poses(int world) {
-  const std::vector<scenes::Pose> poses = simulations[static_cast<std::size_t>(world)]->poses();
+  const std::vector<scenes::Pose> poses = place_of(world)->poses();
   buffer.resize(poses.size() * 7 * sizeof(float));
   for (std::size_t i = 0; i < poses.size(); ++i) {
     std::memcpy(buffer.data() + 28 * i, poses[i].position.data(), 12);
@@ -122,7 +135,7 @@ __attribute__((export_name("motions"))) std::size_t module_motions(int world) {
   buffer.resize(count * 52);
   for (std::size_t i = 0; i < count; ++i)
     std::memcpy(buffer.data() + 52 * i, poses.data() + 28 * i, 28);
-  const scenes::Simulation& simulation = *simulations[static_cast<std::size_t>(world)];
+  const scenes::Simulation& simulation = *place_of(world);
   if (simulation.dimension() == 3)
     write_twists(simulation.spatial()->bodies());
   else
@@ -130,14 +143,17 @@ __attribute__((export_name("motions"))) std::size_t module_motions(int world) {
   return count;
 }
 
-/// Takes the scene of the buffer as that which the ruler measures; 0, or 1 where it is none.
+/// Takes the scene of the buffer as that which the ruler measures; 0, or 1 where the JSON is none,
+/// and then the ruler has none. Traps as `create` does.
 __attribute__((export_name("rule"))) int module_rule(std::size_t bytes) {
   reference = simulation_of(bytes);
   return reference ? 0 : 1;
 }
 
-/// Measures the poses in the buffer: the deepest overlap, m, or -1 where a body is nowhere.
+/// Measures the poses in the buffer: the deepest overlap, m, or -1 where a body is nowhere. Without
+/// a scene of `rule`, or with fewer poses than it has bodies, a trap.
 __attribute__((export_name("overlap"))) float module_overlap() {
+  if (!reference) std::abort();
   measured = reference->dimension() == 3 ? accuracy_of(reference->spatial()->state())
                                          : accuracy_of(reference->planar()->state());
   return measured.finite ? measured.overlap_m : -1.0f;
