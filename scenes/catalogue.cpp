@@ -116,8 +116,11 @@ Loaded load_file(const std::string& file, Untuned untuned) {
   stream.seekg(0, std::ios::end);
   const std::streamoff size = stream.tellg();
   if (size < 0) return mistake("cannot be read");
-  if (size > (64 << 20)) return mistake("is larger than 64 MiB");
   stream.seekg(0);
+  // A directory opens as a file does, and is of any size.
+  if (size != 0 && stream.peek() == std::ifstream::traits_type::eof())
+    return mistake("is a directory, or cannot be read");
+  if (size > (64 << 20)) return mistake("is larger than 64 MiB");
   std::string bytes(static_cast<std::size_t>(size), '\0');
   if (!stream.read(bytes.data(), static_cast<std::streamsize>(size)))
     return mistake("cannot be read");

@@ -120,11 +120,7 @@ void note_bodies(cycloid_client& to, const client::Follower& follower) {
 
 cycloid_status make_client(const cycloid_client_options& options, cycloid_client*& out) {
   scenes::Loaded loaded = scenes::load(options.scene);
-  if (!loaded.scene) {
-    const scenes::Mistake& first = loaded.mistakes.front();
-    return failed(CYCLOID_SCENE,
-                  std::string(options.scene) + ": " + first.path + ": " + first.reason);
-  }
+  if (!loaded.scene) return client::no_scene(options.scene, loaded);
   auto made = std::make_unique<cycloid_client>();
   cycloid_client& client = *made;
   client.options = to_join(options);

@@ -21,6 +21,12 @@ cycloid_status failed(cycloid_status status, std::string_view reason) noexcept {
   return status;
 }
 
+cycloid_status no_scene(const std::string& name, const scenes::Loaded& loaded) {
+  const scenes::Mistake& first = loaded.mistakes.front();
+  const std::string where = first.path.empty() ? "" : first.path + ": ";
+  return failed(CYCLOID_SCENE, name + ": " + where + first.reason);
+}
+
 std::uint32_t copy_text(const std::string& text, char* into, std::uint32_t capacity) noexcept {
   if (into != nullptr && capacity != 0) {
     const std::size_t bytes = std::min<std::size_t>(text.size(), capacity - 1);

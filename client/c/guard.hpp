@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "client/c/cycloid.h"
+#include "scenes/catalogue.hpp"
 #include "scenes/simulation.hpp"
 
 namespace cycloid::client {
@@ -16,6 +17,9 @@ namespace cycloid::client {
 /// Notes why a call on this thread failed; `status` goes back to the caller. Needs no memory before
 /// it is inside: what throws there is caught.
 cycloid_status failed(cycloid_status status, std::string_view reason) noexcept;
+
+/// CYCLOID_SCENE for what could not be loaded, with its first mistake. @pre there is one
+cycloid_status no_scene(const std::string& name, const scenes::Loaded& loaded);
 
 /// `text` with its final 0 as far as `capacity` allows; the bytes that it takes whole.
 std::uint32_t copy_text(const std::string& text, char* into, std::uint32_t capacity) noexcept;

@@ -23,10 +23,7 @@ struct cycloid_saved {
 
 static cycloid_status make_simulation(const char* name, cycloid_simulation*& out) {
   scenes::Loaded loaded = scenes::load(name);
-  if (!loaded.scene) {
-    const scenes::Mistake& first = loaded.mistakes.front();
-    return failed(CYCLOID_SCENE, std::string(name) + ": " + first.path + ": " + first.reason);
-  }
+  if (!loaded.scene) return client::no_scene(name, loaded);
   auto simulation = scenes::Simulation::create(*loaded.scene);
   if (!simulation.ok()) {
     return failed(CYCLOID_SCENE, std::string(name) + ": cannot run: " + simulation.error().field);

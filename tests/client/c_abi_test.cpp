@@ -231,6 +231,8 @@ TEST(CAbi, WrongArgumentsAreNamed) {
   EXPECT_EQ(cycloid_simulation_create("no-such-scene", &made), CYCLOID_SCENE);
   EXPECT_EQ(made, nullptr);
   EXPECT_NE(last_error().find("no-such-scene"), std::string::npos) << last_error();
+  EXPECT_EQ(cycloid_simulation_create("/", &made), CYCLOID_SCENE);
+  EXPECT_EQ(last_error(), "/: is a directory, or cannot be read");
   EXPECT_EQ(cycloid_simulation_create(nullptr, &made), CYCLOID_INVALID);
   const World world = make_world("half-pipe");
   EXPECT_EQ(cycloid_simulation_step(world.get(), nullptr, 7), CYCLOID_INVALID);

@@ -181,6 +181,8 @@ TEST(Mistakes, OfAFileSayWhatItIs) {
   EXPECT_EQ(said_of_file("name"), ": is neither JSON nor a binary scene\n");
   EXPECT_EQ(said_of_file("dimension: 2"), ": is neither JSON nor a binary scene\n");
   EXPECT_EQ(said(from_binary({}).mistakes), ": is empty\n");
+  EXPECT_EQ(said(load_file(testing::TempDir()).mistakes), ": is a directory, or cannot be read\n");
+  EXPECT_EQ(said(load_file("no-such-file").mistakes), ": cannot be read\n");
 }
 
 }  // namespace cycloid::scenes
