@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <cmath>
 #include <deque>
+#include <iterator>
 #include <utility>
 
 #include "client/c/guard.hpp"
@@ -19,7 +20,23 @@ namespace {
 /// Events that wait to be read; what comes beyond pushes the oldest out.
 constexpr std::size_t kEventsWaitingMax = 4096;
 
-constexpr std::uint32_t kOptionsBytesMin = offsetof(cycloid_client_options, scene);
+/// Where the fields of the options begin that older callers may not have.
+constexpr std::size_t kOptionsFieldsAt[] = {
+    offsetof(cycloid_client_options, scene),
+    offsetof(cycloid_client_options, name),
+    offsetof(cycloid_client_options, room),
+    offsetof(cycloid_client_options, token),
+    offsetof(cycloid_client_options, resume),
+    offsetof(cycloid_client_options, resume_bytes),
+    offsetof(cycloid_client_options, port),
+    offsetof(cycloid_client_options, seat),
+    offsetof(cycloid_client_options, profile),
+    offsetof(cycloid_client_options, predict_ticks),
+    offsetof(cycloid_client_options, reconnect_deadline_ms),
+    offsetof(cycloid_client_options, ticks),
+    offsetof(cycloid_client_options, workers),
+    offsetof(cycloid_client_options, scripted),
+};
 
 }  // namespace
 
@@ -53,6 +70,12 @@ cycloid_client_options default_options() {
   options.profile = CYCLOID_PROFILE_EXACT;
   options.workers = 1;
   return options;
+}
+
+/// Whether it can be the size of some version's options: half of a pointer is none.
+bool is_options_size(std::uint32_t bytes) {
+  return bytes >= sizeof(cycloid_client_options) ||
+         std::ranges::find(kOptionsFieldsAt, bytes) != std::end(kOptionsFieldsAt);
 }
 
 std::string text_of(const char* text) {
@@ -189,7 +212,7 @@ static_assert(static_cast<int>(protocol::EventKind::kResume) == CYCLOID_EVENT_RE
 
 cycloid_status cycloid_client_options_init(cycloid_client_options* options) {
   if (options == nullptr) return failed(CYCLOID_INVALID, "options: null");
-  if (options->struct_bytes < kOptionsBytesMin) return failed(CYCLOID_INVALID, "struct_bytes");
+  if (!is_options_size(options->struct_bytes)) return failed(CYCLOID_INVALID, "struct_bytes");
   client::copy_known(default_options(), *options);
   return CYCLOID_OK;
 }
@@ -198,7 +221,7 @@ cycloid_status cycloid_client_create(const cycloid_client_options* options, cycl
   if (out == nullptr) return failed(CYCLOID_INVALID, "out: null");
   *out = nullptr;
   if (options == nullptr) return failed(CYCLOID_INVALID, "options: null");
-  if (options->struct_bytes < kOptionsBytesMin) return failed(CYCLOID_INVALID, "struct_bytes");
+  if (!is_options_size(options->struct_bytes)) return failed(CYCLOID_INVALID, "struct_bytes");
   return guarded([&] {
     cycloid_client_options all = default_options();
     client::copy_known(*options, all);

@@ -2,10 +2,11 @@
  *
  * Handles are opaque. Strings and arrays that go in are copied; what comes out is copied into the
  * caller's memory. No exception leaves a call. A struct that begins with struct_bytes says its
- * size, set by the caller: a newer library understands older callers, and the other way round
- * fields that one side does not know are left at their defaults. cycloid_pose and cycloid_event
- * have no size, for they come in arrays, and are fixed for ever. A handle is used by one thread at
- * a time; different handles are independent.
+ * size, set by the caller, which ends where a field does. So a newer library understands older
+ * callers: fields that they do not know have their defaults. Of a newer caller's struct it neither
+ * reads nor writes the fields that it does not know itself: they stay as they are. cycloid_pose
+ * and cycloid_event have no size, for they come in arrays, and are fixed for ever. A handle is used
+ * by one thread at a time; different handles are independent.
  */
 #ifndef CYCLOID_H
 #define CYCLOID_H

@@ -265,6 +265,9 @@ TEST(CAbi, WrongArgumentsAreNamed) {
       {"resume_bytes",
        [](auto& options) { options.resume = reinterpret_cast<const std::uint8_t*>("abc"); }},
       {"struct_bytes", [](auto& options) { options.struct_bytes = 4; }},
+      {"struct_bytes", [](auto& options) { options.struct_bytes = 20; }},
+      {"struct_bytes", [](auto& options) { options.struct_bytes = 31; }},
+      {"struct_bytes", [](auto& options) { options.struct_bytes = 84; }},
   };
   for (const Case& wrong : cases) {
     cycloid_client_options options = good;
