@@ -65,23 +65,23 @@ void compare_inputs_of(const Side& a, const Side& b, std::uint64_t tick, Found& 
   if (!found.input_text.empty()) found.input_tick = tick;
 }
 
-enum class Stepped : std::uint8_t { kBoth, kOne, kNeither };
+enum class WhoSteps : std::uint8_t { kBoth, kOne, kNeither };
 
 /// Steps both, and notes who cannot.
-Stepped step_both(Side& a, Side& b, std::uint64_t tick, Found& found) {
+WhoSteps step_both(Side& a, Side& b, std::uint64_t tick, Found& found) {
   const solver::Error error_a = a.simulation.step(a.match.inputs(tick, a.simulation.seats()));
   const solver::Error error_b = b.simulation.step(b.match.inputs(tick, b.simulation.seats()));
-  if (error_a.ok() && error_b.ok()) return Stepped::kBoth;
+  if (error_a.ok() && error_b.ok()) return WhoSteps::kBoth;
   if (!error_a.ok() && !error_b.ok()) {
     const std::string text_a = error_text(error_a);
     const std::string text_b = error_text(error_b);
     found.note("neither steps to tick " + std::to_string(tick) + ": " + text_a +
                (text_a == text_b ? "" : " against " + text_b));
-    return Stepped::kNeither;
+    return WhoSteps::kNeither;
   }
   found.note("at tick " + std::to_string(tick) + " only " + (error_a.ok() ? b : a).match.name +
              " does not step: " + error_text(error_a.ok() ? error_b : error_a));
-  return Stepped::kOne;
+  return WhoSteps::kOne;
 }
 
 /// Where two logs recorded unlike digests for what steps alike here, one was made by another world.
@@ -112,9 +112,9 @@ bool compare_ticks(Side& a, Side& b, std::uint64_t last, const DiffOptions& opti
   const std::uint64_t begin = a.match.begin();
   for (std::uint64_t tick = begin + 1; tick <= last; ++tick) {
     compare_inputs_of(a, b, tick, found);
-    const Stepped stepped = step_both(a, b, tick, found);
-    if (stepped == Stepped::kOne) return false;
-    if (stepped == Stepped::kNeither) {
+    const WhoSteps stepped = step_both(a, b, tick, found);
+    if (stepped == WhoSteps::kOne) return false;
+    if (stepped == WhoSteps::kNeither) {
       compare_unstepped(a, b, tick, last, found);
       return true;
     }

@@ -85,7 +85,7 @@ TEST_F(DiffLogs, ThatBothStopSteppingIsSaidWithWhatDiffersBehind) {
   rewrite_log(a_, a_, [](protocol::Log& log) { add_seat(9, log); });
   const Ran same = run_program({"diff", a_, a_});
   EXPECT_EQ(same.exit, 1);
-  EXPECT_THAT(same.out, ContainsRegex("^neither steps to tick 9: k[A-Z][A-Za-z]+ [^;]+\n$"));
+  EXPECT_EQ(same.out, "neither steps to tick 9: invalid inputs\n");
   EXPECT_EQ(run_program({"diff", a_, a_, "--json"}).json()["ticks"], 8);
   rewrite_log(a_, b_, [](protocol::Log& log) {
     log.ticks.resize(30);
