@@ -168,6 +168,13 @@ class RoomTest : public testing::Test {
     EXPECT_EQ(welcomes.size(), 1u);
     return welcomes.empty() ? std::vector<std::byte>{} : welcomes[0].resume;
   }
+  /// A lost seat waits a second for who held it.
+  Limits one_second_to_resume() {
+    resumable_ = true;
+    Limits limits;
+    limits.resume = std::chrono::seconds(1);
+    return limits;
+  }
   PeerId come_back(const std::vector<std::byte>& secret) {
     const PeerId id = room_->connect();
     protocol::Hello greeting = hello();

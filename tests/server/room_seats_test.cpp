@@ -16,13 +16,6 @@ using Events = std::vector<protocol::FrameEvent>;
 class RoomSeats : public RoomTest {
  protected:
   const Events& events_of(std::uint64_t tick) { return log_.ticks[tick - 1].frame.events; }
-
-  Limits one_second_to_resume() {
-    resumable_ = true;
-    Limits limits;
-    limits.resume = std::chrono::seconds(1);
-    return limits;
-  }
 };
 
 TEST_F(RoomSeats, AReservedSeatIsFreeToTheTick) {
