@@ -1,5 +1,6 @@
 #include "server/host/patient_log.hpp"
 
+#include <fcntl.h>
 #include <poll.h>
 #include <spdlog/async_logger.h>
 #include <spdlog/details/null_mutex.h>
@@ -27,10 +28,24 @@ using Pool = spdlog::details::thread_pool;
 /// How long a reader is waited for before the deadline is looked at again.
 constexpr int kLookMs = 20;
 
+/// Where a terminal has room for a byte, a write waits until it has it for a line. Opened once more
+/// it does not, and whoever else has it still waits. -1: it is none, or cannot be opened.
+int open_terminal(int descriptor) {
+  if (::isatty(descriptor) == 0) return -1;
+  const std::string path = "/proc/self/fd/" + std::to_string(descriptor);
+  return ::open(path.c_str(), O_WRONLY | O_NONBLOCK | O_NOCTTY | O_CLOEXEC);
+}
+
 /// Waits for room before it writes, so that the wait can be ended: a blocked write cannot.
 class PatientSink final : public spdlog::sinks::base_sink<spdlog::details::null_mutex> {
  public:
-  explicit PatientSink(int descriptor) : descriptor_(descriptor) {}
+  explicit PatientSink(int descriptor)
+      : terminal_(open_terminal(descriptor)), descriptor_(terminal_ < 0 ? descriptor : terminal_) {}
+  PatientSink(const PatientSink&) = delete;
+  PatientSink& operator=(const PatientSink&) = delete;
+  ~PatientSink() override {
+    if (terminal_ >= 0) (void)::close(terminal_);
+  }
 
   /// Whose queue leaves out lines, and whose thread writes them: it is there as long as anything
   /// is written. @pre before the first line
@@ -61,21 +76,26 @@ class PatientSink final : public spdlog::sinks::base_sink<spdlog::details::null_
       // Where a pipe has room at all, it has it for so many bytes.
       const ssize_t bytes =
           ::write(descriptor_, text.data(), std::min<std::size_t>(text.size(), PIPE_BUF));
-      if (bytes < 0 && errno != EINTR && errno != EAGAIN) return;  // There is no reader any more.
       if (bytes > 0) text.remove_prefix(static_cast<std::size_t>(bytes));
+      if (bytes >= 0 || errno == EINTR) continue;
+      if (errno != EAGAIN || is_too_late()) return;  // There is no reader any more, or no time.
+      (void)::poll(nullptr, 0, kLookMs);  // A terminal has room, but none for the end of a line.
     }
   }
+
+  bool is_too_late() const { return process_now_ns() >= give_up_ns_; }
 
   /// Waits for it; false where that is given up.
   bool has_room() const {
     for (;;) {
-      const bool too_late = process_now_ns() >= give_up_ns_;
+      const bool too_late = is_too_late();
       pollfd reader{descriptor_, POLLOUT, 0};
       if (::poll(&reader, 1, too_late ? 0 : kLookMs) > 0) return true;
       if (too_late) return false;
     }
   }
 
+  int terminal_;  ///< Its own, to close; -1: none.
   int descriptor_;
   Pool* pool_ = nullptr;
   std::size_t said_left_out_ = 0;
