@@ -68,7 +68,8 @@ class Pacer {
   std::int64_t next_ns(std::uint64_t tick) const {
     const std::int64_t serves_ns = served_ns_ + kServeNs;
     if (paused_) return serves_ns;
-    return std::min(waiting_ ? poll_ns_ : due_ns(tick), serves_ns);
+    // A pause while a tick waited has put it off beyond the next look.
+    return std::min(waiting_ ? std::max(poll_ns_, due_ns(tick)) : due_ns(tick), serves_ns);
   }
 
  private:
