@@ -25,7 +25,7 @@ extern "C" {
 
 /* Of this header; cycloid_abi_version() is that of the library. Grows when functions or fields are
  * added; what there is never changes. */
-#define CYCLOID_ABI_VERSION 2
+#define CYCLOID_ABI_VERSION 3
 
 typedef int32_t cycloid_status;
 enum {
@@ -89,8 +89,8 @@ CYCLOID_API cycloid_status cycloid_simulation_restore(cycloid_simulation* simula
                                                       const cycloid_saved* saved);
 CYCLOID_API void cycloid_saved_destroy(cycloid_saved* saved);
 /* The exact state as bytes that travel and keep. The scene's digest comes first, by which decode
- * knows bytes of another scene. `*count` becomes how many bytes or poses there are, also where
- * `capacity` is too small and nothing is written. */
+ * knows bytes of another scene; libraries before version 3 did not write it. `*count` becomes how
+ * many bytes or poses there are, also where `capacity` is too small and nothing is written. */
 CYCLOID_API cycloid_status cycloid_simulation_encode(const cycloid_simulation* simulation,
                                                      uint8_t* bytes, uint32_t capacity,
                                                      uint32_t* count);
