@@ -212,10 +212,10 @@ TEST(Deadlines, AStateThatStaysAwayBehindItsWelcomeIsCalledThat) {
   asio::ip::tcp::acceptor acceptor(io, {asio::ip::address_v4::loopback(), 0});
   JoinOptions options = visit(acceptor.local_endpoint().port(), protocol::Mode::kLockstep);
   options.handshake = std::chrono::milliseconds(1000);
-  auto client = std::async(std::launch::async, [&options] { return join(options); });
-  asio::ip::tcp::socket socket = acceptor.accept();
   const Authority authority(options.scene);
   const protocol::Bytes welcome = protocol::encode(authority.welcome(0));
+  auto client = std::async(std::launch::async, [&options] { return join(options); });
+  asio::ip::tcp::socket socket = acceptor.accept();
   asio::error_code error;
   asio::write(socket, asio::buffer(welcome), error);
   const JoinReport report = client.get();

@@ -74,12 +74,10 @@ TEST_F(ReconnectState, TakesAStateWhereTheServerDoesNotGoOnFromItsOwn) {
 /// On the first connection, on one that is refused, and on one whose state is not the one kept.
 TEST_F(ReconnectState, ShowsAStateOnlyOnceThereIsOne) {
   std::uint64_t newest = 0;
-  int shown = 0;
   options_.on_progress = [&](Follower& follower) {
     EXPECT_TRUE(follower.progress().begun());
     EXPECT_GE(follower.simulation().tick(), newest);
     newest = follower.simulation().tick();
-    ++shown;
   };
   const auto load = [this](Peer& peer) {
     for (int i = 0; i < 40; ++i) authority_.frame();
@@ -103,7 +101,6 @@ TEST_F(ReconnectState, ShowsAStateOnlyOnceThereIsOne) {
   EXPECT_EQ(report.end, End::kBye) << report.reason;
   EXPECT_EQ(report.progress.snapshots, 2u);
   EXPECT_EQ(newest, 80u);
-  EXPECT_GE(shown, 2);
 }
 
 TEST_F(ReconnectState, KeepsNoStateThatTheServerHasContradicted) {
