@@ -20,22 +20,28 @@ std::string setting_text(const Tried& tried) {
   return accuracy::name_of(tried.measured.setting);
 }
 
-std::string energy_text(std::optional<double> energy_j) {
-  if (!energy_j) return "-";
+/// What nobody has measured is a dash.
+std::string number_text(std::optional<double> value, int digits) {
+  if (!value) return "-";
   std::ostringstream text;
-  text << std::fixed << std::setprecision(3) << *energy_j;
+  text << std::fixed << std::setprecision(digits) << *value;
   return text.str();
 }
 
-/// What nobody has measured is a dash.
+/// Of a tick; a setting that faulted is not timed.
+std::optional<double> time_us(const Tried& tried) {
+  if (tried.verdict == tuning::TriedVerdict::kFaulted) return {};
+  return 1.0e-3 * tried.measured.price.ns_per_tick;
+}
+
 void print_tried(const Tried& tried, bool chosen) {
   const bool faulted = tried.verdict == tuning::TriedVerdict::kFaulted;
   std::cout << std::left << std::setw(22) << setting_text(tried) << std::right << std::fixed
             << std::setprecision(1) << std::setw(12) << tried.measured.price.rows_per_tick
-            << std::setw(10) << 1.0e-3 * tried.measured.price.ns_per_tick << std::setw(12)
+            << std::setw(10) << number_text(time_us(tried), 1) << std::setw(12)
             << (faulted ? "-" : length_text(tried.error_m)) << std::setw(12)
             << (tried.moved_m ? length_text(*tried.moved_m) : "-") << std::setw(11)
-            << energy_text(tried.measured.metrics.energy_gained_j) << "  " << hex16(tried.digest)
+            << number_text(tried.measured.metrics.energy_gained_j, 3) << "  " << hex16(tried.digest)
             << "  " << tuning::name_of(tried.verdict) << (chosen ? " <- chosen" : "") << '\n';
 }
 
@@ -75,9 +81,9 @@ Json tried_json(const Tried& tried) {
   Json object = setting_json(tried.measured.setting);
   object["verdict"] = tuning::name_of(tried.verdict);
   object["rows_per_tick"] = tried.measured.price.rows_per_tick;
-  object["ns_per_tick"] = tried.measured.price.ns_per_tick;
-  object["state_bytes"] = tried.measured.price.state_bytes;
   const bool faulted = tried.verdict == tuning::TriedVerdict::kFaulted;
+  object["ns_per_tick"] = faulted ? Json() : Json(tried.measured.price.ns_per_tick);
+  object["state_bytes"] = tried.measured.price.state_bytes;
   object["error_m"] = faulted ? Json() : Json(tried.error_m);
   object["moved_m"] = measured_or_null(tried.moved_m);
   object["energy_gained_j"] = measured_or_null(tried.measured.metrics.energy_gained_j);

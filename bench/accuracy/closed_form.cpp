@@ -31,7 +31,8 @@ static std::optional<Pile> two_bodies(const solver::WorldState<2>& state) {
   return Pile{found[0], found[1]};
 }
 
-/// Whether the lower one meets something fixed and the upper one the lower one alone.
+/// Whether the lower one meets something fixed and the upper one the lower one alone, or they are
+/// as near as contacts foresee.
 static bool lies_on_ground(const solver::WorldState<2>& state, const Pile& pile) {
   bool on_ground = false;
   bool on_lower = false;

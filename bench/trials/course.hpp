@@ -32,8 +32,8 @@ struct Course {
   std::vector<BodyAt> end;     ///< Of the same bodies, without what was taken away.
   double overlap_max_m = 0.0;  ///< The deepest of the whole run.
   double overlap_end_m = 0.0;  ///< The deepest of the last second.
-  std::vector<double> gaps_m;  ///< The widest between a joint's anchors, at each measure.
-  double gap_end_m = 0.0;      ///< The widest between a joint's anchors in the last second.
+  std::vector<double> gaps_m;  ///< The widest of a rigid joint, at each measure.
+  double gap_end_m = 0.0;      ///< The widest of a rigid joint in the last second.
   double energy_start_j = 0.0;
   double energy_end_j = 0.0;
   double turn_max_rad = 0.0;      ///< The farthest the last body was turned, in the plane.

@@ -82,7 +82,7 @@ accuracy::GridLists usual_lists();
 /// chooses the same everywhere, unless there is a budget. Settings are tried in the order of their
 /// sweeps per tick, without those that would have as many rows as the best so far even with half
 /// as many per sweep as any tried one of their method. A cheaper one is missed only where it has
-/// fewer than that.
+/// fewer than that; of a method that faults in each, all are tried.
 ///
 /// It is the scene `as_tried` that is measured.
 /// @pre the scene has no mistake but that it lacks a choice; request.error_m > 0; all methods

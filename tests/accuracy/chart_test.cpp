@@ -138,7 +138,7 @@ TEST(ChartCsv, IsTheSameTwiceAndHasAFieldForEachName) {
 TEST(ChartCsv, MarksTheFrontsOfTheErrorThatIsAskedFor) {
   ChartPlan plan;
   plan.scenes.push_back(chart_of({point_at(10, 0.5), point_at(20, 0.1)}));
-  plan.scenes[0].points[1].measured.metrics.penetration_transient_m.max = 0.2;
+  plan.scenes[0].points[1].measured.metrics.penetration_transient_m = Spread{0.9, 0.9, 0.9};
   const auto marks_of = [&](const char* error) {
     const std::string csv = chart_csv(plan, *find_error_kind(error), {"m", "12", "abc", "today"});
     std::string marks;
