@@ -114,7 +114,9 @@ struct ShapeDef {
   std::vector<float> heights;
   std::uint32_t columns = 0;
   std::array<float, 2> cell{};
-  float density = 1.0f;  ///< kg/m^D; ignored where the body states its mass or is not dynamic.
+  /// kg/m^D. A body that states its mass shares it out among its shapes by density times volume,
+  /// by volume alone where that comes to nothing; one that is not dynamic has none.
+  float density = 1.0f;
   std::uint32_t material = 0;  ///< Index of a material of the world.
   Filter filter;
 };
@@ -163,8 +165,11 @@ enum class CurveKind : std::uint32_t {
 /// What drives the coordinate of a joint.
 enum class MotorKind : std::uint32_t {
   kOff = 0,
-  kSpeed,     ///< Holds motor_speed; has no memory of where it was.
-  kPosition,  ///< Holds the coordinate at target + drive_amplitude sin(2 pi drive_hertz t).
+  kSpeed,  ///< Holds motor_speed; has no memory of where it was.
+  /// Holds the coordinate at target + drive_amplitude sin(2 pi drive_hertz t). An angle goes there
+  /// the shorter way round, as a spring about `target` does; between limits that both lie within
+  /// half a turn, the way that they leave.
+  kPosition,
 };
 
 template <int D>

@@ -150,7 +150,8 @@ class World {
   Error set_filter(BodyId id, std::uint32_t shape, const Filter& filter);
   /// @param max  N m or N.
   Error set_motor(JointId id, bool enabled, float speed, float max);
-  /// A position motor: holds the coordinate at `target` [rad or m] with at most `max`.
+  /// A position motor: holds the coordinate at `target` [rad or m] with at most `max`; an angle by
+  /// the shorter way round, as MotorKind says.
   Error set_target(JointId id, float target, float max);
   /// The angle [rad, |.| <= 1.6] by which a wheel in space is turned about its suspension.
   Error set_steering(JointId id, float angle);

@@ -30,11 +30,15 @@ static Error set_mass_properties(const BodyDef<D>& def, std::span<const ShapeDef
   if (!is_movable<D>(def.kind)) return {};
   std::vector<float> densities;
   for (const int i : def_of) densities.push_back(defs[static_cast<std::size_t>(i)].density);
-  const CentralMass<D> shaped = central_mass<D>(shapes, densities, hulls);
+  CentralMass<D> shaped = central_mass<D>(shapes, densities, hulls);
   const bool stated = def.mass != 0.0f;
   if (!stated && !within(shaped.mass, kMassMin, kMassMax)) return {Code::kInvalid, "mass"};
-  // A stated mass is spread over the shapes by their volume where no density says otherwise. What
-  // that comes to by itself may be far less, or more, than any mass may be.
+  // A stated mass is shared out as the densities say, and by volume alone where they say nothing.
+  if (stated && shaped.mass == 0.0f) {
+    std::fill(densities.begin(), densities.end(), 1.0f);
+    shaped = central_mass<D>(shapes, densities, hulls);
+  }
+  // What the densities of a stated mass come to may be far less, or more, than any mass may be.
   constexpr float kShapedMin = 1.0e-25f;
   constexpr float kShapedMax = 1.0e25f;
   body.mass = stated ? def.mass : shaped.mass;

@@ -1,3 +1,4 @@
+#include "solver/constraints/joints/unwrap.hpp"
 #include "solver/constraints/single_lanes.hpp"
 #include "solver/stages/stages.hpp"
 #include "solver/trig.hpp"
@@ -17,6 +18,17 @@ static void drive_target(const Joint<D>& joint, Wide time_s, JointRow<D>& row) {
   sin_cos(2.0f * kPi * phase, sine, cosine);
   row.spring_rest = joint.target + joint.drive_amplitude * sine;
   row.target_rate = joint.drive_amplitude * 2.0f * kPi * joint.drive_hertz * cosine;
+}
+
+/// A drive about an angle goes the shorter way round: the coordinate leaps from pi to -pi, and what
+/// has swung past there would be driven on, turn after turn. Between limits that both lie within
+/// half a turn it cannot, and they leave one way, which may be the longer.
+template <int D>
+static void take_shorter_way(JointKind kind, JointRow<D>& row) {
+  if (kind != JointKind::kRevolute && kind != JointKind::kHinge) return;
+  const bool is_limited = row.limit_enabled && row.lower > -kPi && row.upper < kPi;
+  if (!row.rows.has_axis || is_limited) return;
+  row.spring_rest = nearest_turn(row.spring_rest, row.rows.axis.error);
 }
 
 /// The masses of bodies whose inertia has turned.
@@ -54,10 +66,12 @@ void evaluate_joints(const StepContext<D>& context, const WorldState<D>& state, 
     for (int i = range.begin; i < range.end; ++i) {
       const int place = single[static_cast<std::size_t>(i)];
       JointRow<D>& row = scratch.joint_rows[static_cast<std::size_t>(place)];
-      drive_target(state.joints[row.joint], time_s, row);
+      const Joint<D>& joint = state.joints[row.joint];
+      drive_target(joint, time_s, row);
       row.mass_a = scratch.masses[row.body_a];
       row.mass_b = scratch.masses[row.body_b];
       evaluate_rows(state, time_s, scratch.motions[row.body_a], scratch.motions[row.body_b], row);
+      take_shorter_way(joint.kind, row);
     }
   });
 }

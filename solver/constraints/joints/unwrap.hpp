@@ -1,6 +1,7 @@
 #pragma once
 
 #include "solver/dim.hpp"
+#include "solver/direct/wide.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
@@ -17,6 +18,15 @@ inline float unwrapped_angle(const Rotation<2>& rotation, float last) {
 /// Gears are planar; space has no one angle.
 inline float unwrapped_angle(const Rotation<3>&, float last) {
   return last;
+}
+
+/// `angle` [rad, within 1e7] by whole turns as near to `near` [rad] as it comes: itself, to the
+/// bit, where that is within half a turn.
+inline float nearest_turn(float angle, float near) {
+  constexpr Wide kTurn = 6.283185307179586;
+  const Wide turns = (static_cast<Wide>(angle) - static_cast<Wide>(near)) / kTurn;
+  const auto whole = static_cast<int>(turns + (turns < 0.0 ? -0.5 : 0.5));
+  return static_cast<float>(static_cast<Wide>(angle) - static_cast<Wide>(whole) * kTurn);
 }
 
 }  // namespace cycloid::solver
