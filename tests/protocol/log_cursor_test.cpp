@@ -1,4 +1,4 @@
-#include <gtest/gtest.h>
+#include <gmock/gmock.h>
 
 #include <random>
 
@@ -132,6 +132,25 @@ TEST(LogCursor, AKeyframeThatIsNotOfItsTickIsCorruption) {
   encoder.keyframe(1002, Bytes(3), bytes);
   EXPECT_EQ(read_log(bytes).state, LogState::kCorrupt);
   EXPECT_EQ(read_log(bytes).last_tick, 1u);
+}
+
+/// Who begins at it would have other inputs than who comes to it by the ticks before.
+TEST(LogCursor, AKeyframeWhoseSeatsAreNotThoseOfItsTickIsCorruption) {
+  const LogTick tick = samples::log_tick(1);
+  LogKeyframe keyframe{1, tick.digest, tick.frame.seats, Bytes(20, std::byte{1})};
+  const auto log_with = [&] {
+    Bytes bytes;
+    LogEncoder encoder(samples::log_header(), bytes);
+    encoder.tick(tick, bytes);
+    encoder.first_keyframe(keyframe, bytes);
+    return scan_log(bytes);
+  };
+  EXPECT_EQ(log_with().state, LogState::kOpen) << log_with().reason;
+  ++keyframe.seats[0].input.buttons;
+  const LogSummary log = log_with();
+  EXPECT_EQ(log.state, LogState::kCorrupt);
+  EXPECT_THAT(log.reason, testing::StartsWith("a keyframe of another match at byte "));
+  EXPECT_TRUE(log.keyframes.empty());
 }
 
 /// A reader begins at one of them, and would never look at the other.

@@ -294,15 +294,16 @@ TEST_F(DesyncDeskTest, OneInquiryAPeerTwoARoomAndSoManyAnHour) {
 }
 
 // Votes come with every digest of a match that goes on for days.
-TEST_F(DesyncDeskTest, KeepsTheVotesOfTheLastEightTicks) {
+TEST_F(DesyncDeskTest, KeepsTheVotesOf4096PeersAndOfTheLastEightTicks) {
   open();
   step_to(30);
   for (std::uint64_t tick = 1; tick <= 9; ++tick)
-    desk_->on_digest(2, tick, client_digests_[tick - 1]);
+    for (PeerId peer = 2; peer <= 4100; ++peer)
+      desk_->on_digest(peer, tick, client_digests_[tick - 1]);
   for (const std::uint64_t tick : {1, 2}) {
     const protocol::Digest said{tick, ~client_digests_[tick - 1]};
     ASSERT_TRUE(desk_->on_mismatch({1, "guest", "their build", 0}, said, now_, *evidence_));
-    EXPECT_EQ(only_finding().votes.replicas, tick == 1 ? 0u : 1u);
+    EXPECT_EQ(only_finding().votes.replicas, tick == 1 ? 0u : 4096u);
   }
 }
 

@@ -40,6 +40,7 @@ class ScriptedDisk : public Disk {
 class MemoryDisk final : public Disk {
  public:
   std::map<std::string, std::vector<std::byte>> files;
+  std::map<std::string, std::size_t> synced_bytes;  ///< That a loss of power leaves of each file.
   std::size_t room_bytes = std::numeric_limits<std::size_t>::max();
   int full_error = ENOSPC;
   std::size_t write_bytes_max = std::numeric_limits<std::size_t>::max();
@@ -64,12 +65,19 @@ class MemoryDisk final : public Disk {
     to.insert(to.end(), bytes.begin(), bytes.begin() + static_cast<std::ptrdiff_t>(written));
     return 0;
   }
-  int sync(int) override { return syncs++ == syncs_until_error ? EIO : 0; }
+  int sync(int file) override {
+    if (syncs++ == syncs_until_error) return EIO;
+    const std::string& name = names_.at(static_cast<std::size_t>(file));
+    synced_bytes[name] = files.at(name).size();
+    return 0;
+  }
   int close(int) override { return 0; }
   int rename(const std::string& from, const std::string& to) override {
     if (files.contains(to)) return EEXIST;
     files[to] = files.at(from);
     files.erase(from);
+    synced_bytes[to] = synced_bytes[from];
+    synced_bytes.erase(from);
     for (std::string& name : names_)
       if (name == from) name = to;
     return 0;

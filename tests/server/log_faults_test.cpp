@@ -109,6 +109,37 @@ TEST_F(LogFaults, AFailedSyncEndsTheLogWhereverItIs) {
   }
 }
 
+/// Nobody syncs a file once it is closed, and the next one goes on from its end.
+TEST_F(LogFaults, ALogIsSyncedToItsEndBeforeTheNextHasItsName) {
+  for (const bool fails : {false, true}) {
+    disk_ = std::make_shared<MemoryDisk>();
+    LogWriter writer(options(), {});
+    ASSERT_FALSE(writer.rotate("second"));
+    writer.tick(numbered_tick(1));
+    writer.keyframe(1, numbered_tick(1).digest, numbered_state(1));
+    if (fails) disk_->syncs_until_error = disk_->syncs;
+    writer.turn();
+    EXPECT_EQ(writer.durable(), !fails);
+    EXPECT_EQ(writer.error().starts_with("log: sync: "), fails) << writer.error();
+    EXPECT_EQ(disk_->files.contains("second"), !fails);
+    if (!fails) {
+      EXPECT_EQ(disk_->synced_bytes.at("log"), disk_->files.at("log").size());
+    }
+  }
+}
+
+TEST_F(LogFaults, ALogWithoutACloseIsSyncedToItsLastTick) {
+  {
+    LogWriter writer(options(), {});
+    writer.tick(numbered_tick(1));
+    writer.turn();
+    writer.tick(numbered_tick(2));
+  }
+  const std::vector<std::byte>& bytes = disk_->files.at("log");
+  EXPECT_EQ(protocol::read_log(bytes).ticks.size(), 2u);
+  EXPECT_EQ(disk_->synced_bytes.at("log"), bytes.size());
+}
+
 /// Interval mode without a thread: the clock says when.
 TEST_F(LogFaults, WithoutAThreadTheIntervalIsThatOfTheClockGiven) {
   LogWriter writer(options(), {});

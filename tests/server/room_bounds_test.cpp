@@ -42,6 +42,25 @@ TEST_F(RoomBounds, CatchingUpIsBoundedInTicksAndSkipsNone) {
   for (std::size_t i = 0; i < log_.ticks.size(); ++i) EXPECT_EQ(log_.ticks[i].frame.tick, i + 1);
 }
 
+/// The news of an overload must not add to it.
+TEST_F(RoomBounds, AnOverloadIsToldOnceASecondWithAllThatWasLost) {
+  open();
+  const PeerId id = enter(0);
+  const auto told_after_a_stall = [&] {
+    now_ += 20 * kTickNs;
+    room_->advance();
+    return only<protocol::RoomNotice>(hear(id));
+  };
+  EXPECT_EQ(told_after_a_stall().size(), 1u);
+  EXPECT_TRUE(told_after_a_stall().empty());
+  EXPECT_TRUE(told_after_a_stall().empty());
+  const auto notices = told_after_a_stall();  // 60 ticks after the first: a second.
+  ASSERT_EQ(notices.size(), 1u);
+  EXPECT_EQ(notices[0].kind, protocol::NoticeKind::kSlowed);
+  EXPECT_EQ(notices[0].value, room_->statistics().slowed_ns / 1'000'000);
+  EXPECT_GT(notices[0].value, 700u) << "ms, of all four";
+}
+
 TEST_F(RoomBounds, AStallChangesNoBit) {
   open();
   run(60);
@@ -163,6 +182,36 @@ TEST_F(RoomBounds, JoinsOfOneTickAreBoundedAndEveryLeaveHasRoom) {
   run(1);
   EXPECT_LE(log_.ticks[0].frame.events.size(), protocol::kFrameEventsMax);
   EXPECT_FALSE(room_->wants_close(join(0)));
+}
+
+/// A room full of players who all are lost and then kicked, with as many events before as may be.
+TEST_F(RoomBounds, EverySeatCanBeLostAndLeftInTheTickOfTheLastJoin) {
+  scenes::Scene scene = two_seat_scene();
+  while (scene.seats.size() < scenes::kSeatsMax) {
+    scene.seats.push_back(scene.seats[0]);
+    scene.seats.back().name = "seat " + std::to_string(scene.seats.size());
+  }
+  open(one_second_to_resume(), 0, scene);
+  std::vector<PeerId> seated = {kNobody};
+  while (seated.size() < scenes::kSeatsMax) {
+    seated.push_back(join(static_cast<std::int32_t>(seated.size())));
+  }
+  run(1);
+  const auto lose_and_kick = [&](PeerId id, std::size_t seat) {
+    room_->disconnect(id);
+    EXPECT_TRUE(room_->kick(seat, "gone"));
+  };
+  PeerId last = join(0);
+  for (int i = 0; i < 1000 && !room_->wants_close(last); ++i) {
+    lose_and_kick(last, 0);
+    last = join(0);
+  }
+  EXPECT_EQ(refusal(last).code, Refusal::kRoomFull);
+  for (std::size_t seat = 1; seat < seated.size(); ++seat) lose_and_kick(seated[seat], seat);
+  run(1);
+  const std::size_t events = log_.ticks[1].frame.events.size();
+  EXPECT_LE(events, protocol::kFrameEventsMax);
+  EXPECT_GT(events, protocol::kFrameEventsMax - 4) << "no join was refused without need";
 }
 
 TEST_F(RoomBounds, DrainingTellsAllAndClosesTheLog) {

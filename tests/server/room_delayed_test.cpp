@@ -224,6 +224,26 @@ TEST_F(RoomDelayed, ADigestOfAPlayerWhoLooksOnSinceIsNoMistake) {
   EXPECT_EQ(refusal(id).code, protocol::Refusal::kBadMessage);
 }
 
+TEST_F(RoomDelayed, AnAdminWhoLooksOnSinceSeesTheMatchAsItIs) {
+  RoomOptions options;
+  options.spectator_delay_ticks = 50;
+  options.slow = SlowPeer::kSpectate;
+  options.limits.slow_ticks_max = 5;
+  open_with(options);
+  const PeerId admin = admit(0, Role::kAdmin);
+  const PeerId player = admit(1, Role::kPlayer);
+  for (const PeerId id : {admin, player}) {
+    (void)hear(id);
+    say(id, protocol::Input{1, push(1)});
+  }
+  run(80);
+  for (const std::size_t seat : {0u, 1u}) {
+    EXPECT_EQ(room_->seats()[seat].state, SeatState::kFree);
+  }
+  EXPECT_EQ(only<protocol::InputFrame>(hear(player)).back().tick, 30u);
+  EXPECT_EQ(only<protocol::InputFrame>(hear(admin)).back().tick, 80u);
+}
+
 TEST_F(RoomDelayed, APlayerOfSnapshotsWhoLooksOnSinceSeesNothingOlder) {
   RoomOptions options;
   options.spectator_delay_ticks = 50;

@@ -181,6 +181,28 @@ TEST_F(RoomDesync, IsInquiredIntoWithTheTicksSinceTheKeyframe) {
   EXPECT_EQ(inquiry.gone, std::vector<PeerId>{id});
 }
 
+/// It is asked for once, so it may come twice at the most, and a little beside.
+TEST_F(RoomDesync, OnlySoMuchOfAStateIsFreeOfTheRates) {
+  TestInquiry inquiry;
+  inquiry_ = &inquiry;
+  Limits limits;
+  limits.bytes_per_s = 4096;
+  open(limits);
+  const PeerId id = enter(0);
+  run(65);
+  (void)hear(id);
+  say(id, protocol::Digest{60, 0xbad});
+  (void)hear(id);
+  const protocol::StatePart part{60, 6000, 0, std::vector<std::byte>(3000)};
+  for (int i = 0; i < 60 && !room_->wants_close(id); ++i) say(id, part);
+  EXPECT_EQ(refusal(id).code, Refusal::kRateLimited);
+  std::vector<std::byte> state;
+  room_->encode_state(state);
+  const std::size_t free_bytes = 2 * state.size() + 65536;
+  EXPECT_GT(inquiry.bytes, free_bytes - 2 * part.bytes.size());
+  EXPECT_LT(inquiry.bytes, free_bytes + 2 * limits.bytes_per_s);
+}
+
 TEST_F(RoomDesync, OnlyDigestsThatAllAreAskedForAreVotes) {
   TestInquiry inquiry;
   inquiry_ = &inquiry;
