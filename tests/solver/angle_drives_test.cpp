@@ -152,6 +152,7 @@ TEST(AngleDrives, WhatIsWithinHalfATurnKeepsItsBits) {
     EXPECT_EQ(nearest_turn(angle, 0.04f), angle);
     EXPECT_EQ(std::signbit(nearest_turn(angle, 0.0f)), std::signbit(angle));
   }
+  EXPECT_EQ(nearest_turn(2.0f, std::numeric_limits<float>::quiet_NaN()), 2.0f);
   EXPECT_NEAR(nearest_turn(4.0f, 0.0f), 4.0f - kPi2, 1.0e-6f);
   EXPECT_NEAR(nearest_turn(-3.0f, 3.0f), kPi2 - 3.0f, 1.0e-6f);
   EXPECT_NEAR(nearest_turn(1.0e6f, 0.0f), std::remainder(1.0e6, 6.283185307179586), 0.07);

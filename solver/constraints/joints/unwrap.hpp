@@ -21,10 +21,13 @@ inline float unwrapped_angle(const Rotation<3>&, float last) {
 }
 
 /// `angle` [rad, within 1e7] by whole turns as near to `near` [rad] as it comes: itself, to the
-/// bit, where that is within half a turn.
+/// bit, where that is within half a turn, or no number. What a cast to int makes of no number is
+/// not the same on every machine, so none gets there.
 inline float nearest_turn(float angle, float near) {
   constexpr Wide kTurn = 6.283185307179586;
   const Wide turns = (static_cast<Wide>(angle) - static_cast<Wide>(near)) / kTurn;
+  const bool is_beyond = turns > 0.5 || turns < -0.5;
+  if (!is_beyond) return angle;
   const auto whole = static_cast<int>(turns + (turns < 0.0 ? -0.5 : 0.5));
   return static_cast<float>(static_cast<Wide>(angle) - static_cast<Wide>(whole) * kTurn);
 }
