@@ -40,7 +40,8 @@ static void set_axis(const StepContext<D>& context, const Joint<D>& joint, Joint
   row.limit_enabled = joint.limit_enabled != 0;
   row.spring = joint.hertz > 0.0f ? spring_softness(joint.hertz, joint.damping_ratio, context.h)
                                   : context.motor;
-  row.spring_rest = joint.kind == JointKind::kDistance ? joint.length : joint.target;
+  const bool springs_to_length = joint.kind == JointKind::kDistance && !row.motor_holds_position;
+  row.spring_rest = springs_to_length ? joint.length : joint.target;
   row.target_rate = 0.0f;
   row.lower = joint.lower;
   row.upper = joint.upper;

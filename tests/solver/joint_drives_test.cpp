@@ -87,6 +87,30 @@ TEST(PositionMotor, HoldsAgainstGravityWithinItsForce) {
   check_position_motor<3>();
 }
 
+template <int D>
+static void check_motor_of_a_distance() {
+  for (const Method& method : methods()) {
+    Scene<D> scene(method.tuning, false);
+    const BodyId body = scene.add_ball(at<D>(0.0f, 1.0f), 2.0f);
+    JointDef<D> def = scene.joint(JointKind::kDistance, scene.anchor, body);
+    def.length = 1.0f;
+    def.motor = MotorKind::kPosition;
+    def.target = 2.0f;
+    def.motor_max = 1000.0f;
+    const JointId id = scene.create(def);
+    step(scene.world, 180);
+    EXPECT_NEAR(scene.world.joint_separation(id).value(), 2.0f, 0.001f) << method.name;
+    ASSERT_TRUE(scene.world.set_target(id, 0.5f, 1000.0f).ok());
+    step(scene.world, 180);
+    EXPECT_NEAR(scene.world.joint_separation(id).value(), 0.5f, 0.001f) << method.name;
+  }
+}
+
+TEST(PositionMotor, OfADistanceHoldsItsTargetAndNotTheLengthOfItsSpring) {
+  check_motor_of_a_distance<2>();
+  check_motor_of_a_distance<3>();
+}
+
 TEST(PositionMotor, HoldsAnAngleAgainstAnUnbalancedWeight) {
   for (const Method& method : methods()) {
     Scene<2> scene(method.tuning);

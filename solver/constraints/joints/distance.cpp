@@ -7,7 +7,7 @@ namespace cycloid::solver {
 ///   J = (-u, -r_a x u, u, r_b x u).
 /// Rigid: one equality, impulse along u [N s] unbounded. With hertz > 0 a spring of rest length
 /// `length` along the coordinate |d|; with limits a rope or a strut: lower <= |d| <= upper, each
-/// limit's impulse >= 0.
+/// limit's impulse >= 0. A position motor holds |d| at `target`, whatever the length.
 /// Source: Catto, "Modeling and Solving Constraints" (GDC 2009) and "Soft Constraints" (2011).
 template <int D>
 void distance_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
