@@ -78,6 +78,7 @@ void evaluate_rows(const WorldState<D>& state, Wide time_s, const Motion<D>& a, 
   // A user's function may count on rows of zeros.
   if (frame.joint.kind == JointKind::kUser) row.rows.rows.fill(Row<D>{});
   write_rows(row.rows_function, frame, row.rows);
+  for (int i = row.rows.count; i < JointRow<D>::kRows; ++i) row.impulse[i] = 0.0f;
   factor_block(0, row.rows.split, row, row.blocks[0]);
   factor_block(row.rows.split, row.rows.count, row, row.blocks[1]);
   row.limit_near = row.rows.has_axis && limit_is_near(row, a, b);

@@ -50,7 +50,8 @@ static void set_axis(const StepContext<D>& context, const Joint<D>& joint, Joint
   row.motor_impulse_max = context.h * joint.motor_max;
 }
 
-/// Impulses of what is switched off are forgotten, or they would come back as a kick.
+/// Impulses of what is switched off are forgotten, or they would come back as a kick; those of
+/// equalities once it is known how many there are (evaluate_rows).
 template <int D>
 static void take_impulses(float share, const Joint<D>& joint, JointRow<D>& row) {
   for (int i = 0; i < JointRow<D>::kRows; ++i)

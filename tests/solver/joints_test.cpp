@@ -255,6 +255,27 @@ TEST(Joints, RopeIsSlackUntilItsLengthAndThenHolds) {
   check_rope<3>();
 }
 
+// A weight on a rod, a pulley or a wire, which limits then make slack.
+TEST(Joints, ImpulsesOfAnEqualityThatIsSwitchedOffAreForgotten) {
+  for (const Method& method : methods())
+    for (const JointKind kind : {JointKind::kDistance, JointKind::kPulley, JointKind::kCurve}) {
+      Scene<2> scene(method.tuning);
+      const BodyId bob = scene.add_ball({{0.0f, -1.0f}}, 2.0f);
+      JointDef<2> def = scene.joint(kind, scene.anchor, bob);
+      def.ground_a = {{0.0f, 1.0f}};
+      def.length = kind == JointKind::kPulley ? 2.0f : 1.0f;
+      def.size = {1.0f, 1.0f};
+      const JointId id = scene.create(def);
+      step(scene.world, 30);
+      const bool is_projected = method.tuning.stabilisation == Stabilisation::kXpbd;
+      EXPECT_EQ(scene.state_of(id).impulse[0] == 0.0f, is_projected) << method.name;
+      ASSERT_TRUE(scene.world.set_limits(id, true, -9.0f, 9.0f).ok());
+      step(scene.world, 1);
+      EXPECT_EQ(scene.state_of(id).impulse[0], 0.0f)
+          << method.name << " kind " << static_cast<int>(kind);
+    }
+}
+
 /// A disc on a pin at `arm` from its centre falls against its limits, then is pulled to the others.
 static void check_revolute_limits(const Method& method, float arm) {
   Scene<2> scene(method.tuning);
