@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "tests/solver/joint_scene.hpp"
 
 namespace cycloid::solver {
@@ -202,6 +204,54 @@ TEST(Curve, BallRollsBetweenTheOffsetsAndTouchesOneAtATime) {
       ASSERT_TRUE(joint.lower_impulse == 0.0f || joint.upper_impulse == 0.0f) << method.name;
     }
   }
+}
+
+/// A triangle with its tip at the origin and the rest of it on the side of -x, its points beginning
+/// with the `first`.
+static ShapeDef<2> tip_of_triangle(float angle, std::size_t first, bool clockwise) {
+  const Vec<2> back = {{-3.0f * std::cos(0.5f * angle), 3.0f * std::sin(0.5f * angle)}};
+  ShapeDef<2> shape;
+  shape.kind = ShapeKind::kPolygon;
+  shape.points = {{{0.0f, 0.0f}}, back, {{back[0], -back[1]}}};
+  std::rotate(shape.points.begin(), shape.points.begin() + static_cast<std::ptrdiff_t>(first),
+              shape.points.end());
+  if (clockwise) std::reverse(shape.points.begin(), shape.points.end());
+  shape.filter.mask = 0;
+  return shape;
+}
+
+/// How far a bead moves that rests beside a tip, half a metre off it and within its limits, m.
+static float moved_beside(const Tuning& tuning, const ShapeDef<2>& shape, float angle) {
+  Scene<2> scene(tuning, false);
+  BodyDef<2> fixed;
+  fixed.kind = BodyKind::kStatic;
+  const BodyId triangle = add(scene.world, fixed, shape);
+  const Vec<2> start = {{0.5f * std::cos(angle), 0.5f * std::sin(angle)}};
+  const BodyId bead = scene.add_ball(start, 1.0f, 0.05f);
+  JointDef<2> def = scene.joint(JointKind::kCurve, triangle, bead);
+  def.curve = CurveKind::kPolyline;
+  def.limit_enabled = true;
+  def.lower = 0.1f;
+  def.upper = 1.0f;
+  scene.create(def);
+  step(scene.world, 60);
+  return length(view(scene.world, bead).position - start);
+}
+
+// From a tip of 30 degrees half the way round it is behind one of the two edges that meet there.
+TEST(Curve, BesideASharpCornerOfAPolylineIsOutside) {
+  const float degree = kPi2 / 360.0f;
+  for (const Method& method : methods())
+    for (const float corner : {30.0f, 60.0f, 89.0f, 120.0f})
+      for (const float beside : {-0.9f, -0.5f, 0.0f, 0.5f, 0.9f})
+        for (std::size_t first = 0; first < 3; ++first)
+          for (const bool clockwise : {false, true}) {
+            const ShapeDef<2> shape = tip_of_triangle(corner * degree, first, clockwise);
+            const float angle = beside * 0.5f * (180.0f - corner) * degree;
+            EXPECT_LT(moved_beside(method.tuning, shape, angle), 1.0e-4f)
+                << method.name << " corner " << corner << " beside " << beside << " first " << first
+                << " clockwise " << clockwise;
+          }
 }
 
 template <int D>

@@ -52,20 +52,39 @@ CurvePoint nearest_on_curve(CurveKind kind, const std::array<float, 2>& size, co
   }
 }
 
-static CurvePoint nearest_on_edge(const Vec<2>& start, const Vec<2>& end, const Vec<2>& normal,
-                                  const Vec<2>& point) {
+/// A point against an edge.
+struct EdgePoint {
+  CurvePoint at;
+  float height;  ///< From the line of the edge, without sign, m.
+  float digits;  ///< What rounding may add to the distance, m; 0 on the edge.
+};
+
+static EdgePoint nearest_on_edge(const Vec<2>& start, const Vec<2>& end, const Vec<2>& normal,
+                                 const Vec<2>& point) {
   const Vec<2> edge = end - start;
   const float share = clamp(dot(point - start, edge) / dot(edge, edge), 0.0f, 1.0f);
   const Vec<2> between = point - (start + share * edge);
-  const float side = dot(between, normal) < 0.0f ? -1.0f : 1.0f;
+  const float height = dot(between, normal);
+  const float side = height < 0.0f ? -1.0f : 1.0f;
   const float distance = length(between);
+  const float digits = 1.0e-5f * length(edge);
   // On the edge itself the direction to the point has no digits left; the edge's normal has.
-  if (distance < 1.0e-5f * length(edge)) return {dot(between, normal), normal};
-  return {side * distance, (side / distance) * between};
+  if (distance < digits) return {{height, normal}, abs(height), 0.0f};
+  return {{side * distance, (side / distance) * between}, abs(height), digits};
+}
+
+/// Whether the first is nearer. Two edges as near that have the point on different sides are those
+/// of a corner sharper than a right angle: of them only the one that it stands higher over is sure
+/// to have it on the right side.
+static bool is_nearer_edge(const EdgePoint& one, const EdgePoint& other) {
+  const float nearer = abs(other.at.distance) - abs(one.at.distance);
+  const bool sides_differ = (one.at.distance < 0.0f) != (other.at.distance < 0.0f);
+  const bool are_equal = abs(nearer) < min(one.digits, other.digits);
+  return sides_differ && are_equal ? one.height > other.height : nearer > 0.0f;
 }
 
 CurvePoint nearest_on_outline(const WorldState<2>& state, std::uint32_t body, const Vec<2>& point) {
-  CurvePoint nearest{0.0f, kUp};
+  EdgePoint nearest{{0.0f, kUp}, 0.0f, 0.0f};
   bool found = false;
   for (std::uint32_t s = state.bodies[body].first_shape; s != kNone; s = state.shapes[s].next) {
     const Shape<2>& shape = state.shapes[s];
@@ -74,13 +93,13 @@ CurvePoint nearest_on_outline(const WorldState<2>& state, std::uint32_t body, co
     const std::uint32_t edges = segment ? 1 : shape.vertex_count;
     for (std::uint32_t e = 0; e < edges; ++e) {
       const Vec<2>& end = shape.vertices[(e + 1) % shape.vertex_count];
-      const CurvePoint candidate = nearest_on_edge(shape.vertices[e], end, shape.normals[e], point);
-      if (found && abs(candidate.distance) >= abs(nearest.distance)) continue;
+      const EdgePoint candidate = nearest_on_edge(shape.vertices[e], end, shape.normals[e], point);
+      if (found && !is_nearer_edge(candidate, nearest)) continue;
       nearest = candidate;
       found = true;
     }
   }
-  return nearest;
+  return nearest.at;
 }
 
 }  // namespace cycloid::solver
