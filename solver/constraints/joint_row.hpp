@@ -108,11 +108,26 @@ bool is_held(const JointRow<D>& row) {
   return row.rows_function != nullptr && !row.is_spring[0] && !row.is_spring[1];
 }
 
+/// J v: how fast an error changes by what the bodies do.
+template <int D>
+[[gnu::always_inline]] inline float speed_of_bodies(const Row<D>& row, const Motion<D>& a,
+                                                    const Motion<D>& b) {
+  return (dot(row.linear_a, a.velocity) + dot(row.angular_a, a.spin)) +
+         (dot(row.linear_b, b.velocity) + dot(row.angular_b, b.spin));
+}
+
+/// The same with what time does.
 template <int D>
 [[gnu::always_inline]] inline float row_speed(const Row<D>& row, const Motion<D>& a,
                                               const Motion<D>& b) {
-  return (dot(row.linear_a, a.velocity) + dot(row.angular_a, a.spin)) +
-         (dot(row.linear_b, b.velocity) + dot(row.angular_b, b.spin)) + row.rate;
+  return speed_of_bodies(row, a, b) + row.rate;
+}
+
+/// The same in a sweep. What time does is for velocities: pseudo-velocities would do it again.
+template <int D>
+[[gnu::always_inline]] inline float row_speed_in(Sweep sweep, const Row<D>& row, const Motion<D>& a,
+                                                 const Motion<D>& b) {
+  return speed_of_bodies(row, a, b) + (sweep == Sweep::kPseudo ? 0.0f : row.rate);
 }
 
 /// J^T lambda of several rows: what they push both bodies with, N s and N m s.

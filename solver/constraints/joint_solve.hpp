@@ -114,7 +114,7 @@ void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow
   float change[JointRow<D>::kRows];
   for (int i = 0; i < count; ++i) {
     const Row<D>& equality = row.rows.rows[static_cast<std::size_t>(begin + i)];
-    change[i] = row_speed(equality, a, b) + softness.bias_rate * equality.error;
+    change[i] = row_speed_in(sweep, equality, a, b) + softness.bias_rate * equality.error;
   }
   row.blocks[index].solve(change, count);
   float size = 0.0f;
@@ -176,7 +176,7 @@ void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, c
     softness = sweep == Sweep::kPseudo ? context.pseudo : context.joint;
     bias = softness.bias_rate * room;
   }
-  const float speed = sign * row_speed(axis, a, b);
+  const float speed = sign * row_speed_in(sweep, axis, a, b);
   const float change =
       -held.mass * softness.mass_scale * (speed + bias) - softness.impulse_scale * impulse;
   const float accumulated = max(impulse + change, 0.0f);

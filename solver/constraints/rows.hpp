@@ -12,7 +12,8 @@ namespace cycloid::solver {
 ///   Cdot = linear_a . v_a + angular_a . w_a + linear_b . v_b + angular_b . w_b + rate
 ///
 /// The four vectors are the row's Jacobian J; v [m/s] of the centres of mass, w [rad/s], world
-/// axes. `error` is C in m or rad, `rate` its partial derivative in time, C being C(x, t).
+/// axes. `error` is C in m or rad, `rate` its partial derivative in time, C being C(x, t). While a
+/// row of a user's states a rate other than 0, what its joint holds on to stays awake or wakes.
 template <int D>
 struct Row {
   Vec<D> linear_a = Vec<D>::zero();
@@ -123,6 +124,20 @@ JointFrame<D> make_frame(const WorldState<D>& state, const Joint<D>& joint,
           centre_offset + (r_b - r_a),
           compose(conjugate(joint.reference), compose(conjugate(rotation_a), rotation_b)),
           time_s};
+}
+
+/// The rows of a joint where its bodies stand between ticks. @param time_s  since tick 0.
+template <int D>
+JointRows<D> rows_between_ticks(const WorldState<D>& state, const Joint<D>& joint,
+                                RowsFunction<D> function, float time_s) {
+  const Body<D>& a = state.bodies[joint.body_a];
+  const Body<D>& b = state.bodies[joint.body_b];
+  JointRows<D> rows{};
+  write_rows(
+      function,
+      make_frame(state, joint, a.position, b.position - a.position, a.rotation, b.rotation, time_s),
+      rows);
+  return rows;
 }
 
 /// C = direction . (anchor_b - anchor_a) with a direction that turns with body a:

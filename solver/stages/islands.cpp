@@ -10,8 +10,32 @@
 
 namespace cycloid::solver {
 
+static bool cone_states_rate(const ConeRow<2>&) {
+  return false;
+}
+static bool cone_states_rate(const ConeRow<3>& rows) {
+  return rows.has_cone_axis && rows.cone_axis.rate != 0.0f;
+}
+
+/// Whether time alone moves a user's joint as its function has it now. @pre it is registered.
 template <int D>
-static bool drives(const Joint<D>& joint) {
+static bool states_rate(const WorldState<D>& state, const StepScratch<D>& scratch,
+                        const Joint<D>& joint) {
+  const auto tick = static_cast<std::int64_t>(state.header.tick);
+  const JointRows<D> rows = rows_between_ticks(
+      state, joint, find_rows_function<D>(scratch.kept->user_rows, joint.user_kind),
+      static_cast<float>(tick) * state.header.tick_s);
+  for (int i = 0; i < rows.count; ++i)
+    if (rows.rows[static_cast<std::size_t>(i)].rate != 0.0f) return true;
+  return (rows.has_axis && rows.axis.rate != 0.0f) ||
+         (rows.has_motor_axis && rows.motor_axis.rate != 0.0f) || cone_states_rate(rows);
+}
+
+/// Whether a joint moves what it holds on to by itself.
+template <int D>
+static bool drives(const WorldState<D>& state, const StepScratch<D>& scratch,
+                   const Joint<D>& joint) {
+  if (joint.kind == JointKind::kUser && states_rate(state, scratch, joint)) return true;
   const bool runs = joint.motor == MotorKind::kSpeed && joint.motor_speed != 0.0f;
   return runs || (joint.motor == MotorKind::kPosition && joint.drive_amplitude != 0.0f);
 }
@@ -36,7 +60,8 @@ static void find_islands(const WorldState<D>& state, StepScratch<D>& scratch) {
   for (const Contact<D>& contact : scratch.contacts)
     link(state.shapes[contact.shape_a].body, state.shapes[contact.shape_b].body, false);
   for (const Joint<D>& joint : state.joints)
-    if (joint.kind != JointKind::kFree) link(joint.body_a, joint.body_b, drives(joint));
+    if (joint.kind != JointKind::kFree)
+      link(joint.body_a, joint.body_b, drives(state, scratch, joint));
 }
 
 /// Whether something that is active, or drives, holds on to a body that is asleep.
@@ -55,8 +80,8 @@ static bool wakes_somebody(const WorldState<D>& state, const StepScratch<D>& scr
   }
   for (const Joint<D>& joint : state.joints) {
     if (joint.kind == JointKind::kFree) continue;
-    const bool wakes = drives(joint) || active[joint.body_a] != active[joint.body_b];
-    if (wakes && (sleeps(joint.body_a) || sleeps(joint.body_b))) return true;
+    if (!sleeps(joint.body_a) && !sleeps(joint.body_b)) continue;
+    if (active[joint.body_a] != active[joint.body_b] || drives(state, scratch, joint)) return true;
   }
   return false;
 }
@@ -209,7 +234,8 @@ static void join_resting(const WorldState<D>& state, StepScratch<D>& scratch) {
   for (const Contact<D>& contact : scratch.contacts)
     link(state.shapes[contact.shape_a].body, state.shapes[contact.shape_b].body, false);
   for (const Joint<D>& joint : state.joints)
-    if (joint.kind != JointKind::kFree) link(joint.body_a, joint.body_b, drives(joint));
+    if (joint.kind != JointKind::kFree)
+      link(joint.body_a, joint.body_b, drives(state, scratch, joint));
 }
 
 /// An island whose bodies have all been slower than sleep_speed for sleep_s falls asleep: its

@@ -82,14 +82,9 @@ static constexpr float kOpen = 0.0005f;
 template <int D>
 static float apart_by_rows(const StepContext<D>& context, const WorldState<D>& state,
                            const JointRow<D>& row) {
-  const Body<D>& a = state.bodies[row.body_a];
-  const Body<D>& b = state.bodies[row.body_b];
   const auto tick = static_cast<std::int64_t>(state.header.tick);
-  JointRows<D> rows{};
-  write_rows(row.rows_function,
-             make_frame(state, state.joints[row.joint], a.position, row.centre_offset, a.rotation,
-                        b.rotation, static_cast<float>(tick) * context.tick_s),
-             rows);
+  const JointRows<D> rows = rows_between_ticks(state, state.joints[row.joint], row.rows_function,
+                                               static_cast<float>(tick) * context.tick_s);
   Vec<D> apart = Vec<D>::zero();
   for (int i = 0; i < D && rows.split >= D; ++i)
     apart[i] = rows.rows[static_cast<std::size_t>(i)].error;

@@ -6,6 +6,7 @@ namespace cycloid::solver {
 
 constexpr std::uint32_t kParabola = 4;
 constexpr std::uint32_t kBowl = 9;
+constexpr std::uint32_t kCarried = 2;
 
 /// b's anchor stays on y = k x^2 / 2 of a, in the plane, with k the first parameter:
 ///   C = y - k x^2 / 2, gradient (-k x, 1).
@@ -27,6 +28,18 @@ static void bowl_rows(const JointFrame<3>& frame, JointRows<3>& rows) {
   rows.split = 1;
   rows.has_axis = true;
   rows.axis = translation_row(frame, rotate(frame.rotation_a, Vec<3>{{1.0f, 0.0f, 0.0f}}));
+}
+
+/// b's anchor stays at that of a until as many seconds as the first parameter have gone, and then
+/// leaves along +x at 1 m/s.
+template <int D>
+static void carried_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
+  append_point_rows(frame, rows);
+  rows.split = rows.count;
+  const float since_s = frame.time_s - frame.joint.parameters[0];
+  if (since_s < 0.0f) return;
+  rows.rows[0].error -= since_s;
+  rows.rows[0].rate = -1.0f;
 }
 
 template <int D>
@@ -111,6 +124,45 @@ TEST(UserConstraint, IsRefusedBeforeItsFunctionIsRegistered) {
   EXPECT_EQ(scene.world.digest(), before);  // Functions are not state.
   EXPECT_TRUE(scene.world.create_joint(user_joint(scene, bead, kParabola)).ok());
   EXPECT_NE(scene.world.digest(), before);
+}
+
+template <int D>
+static void check_waking() {
+  for (Method method : methods()) {
+    method.tuning.sleep_s = 0.5f;
+    Scene<D> scene(method.tuning, false);
+    scene.world.register_constraint(kCarried, &carried_rows<D>);
+    const BodyId bead = scene.add_ball(Vec<D>::zero(), 2.0f, 0.05f);
+    JointDef<D> def = user_joint(scene, bead, kCarried);
+    def.parameters = {2.0f, 0.0f, 0.0f, 0.0f};
+    scene.create(def);
+    step(scene.world, 90);
+    EXPECT_EQ(scene.world.state().bodies[bead.index].asleep, 1u) << method.name;
+    step(scene.world, 210);
+    EXPECT_EQ(scene.world.state().bodies[bead.index].asleep, 0u) << method.name;
+    EXPECT_NEAR(view(scene.world, bead).position[0], 3.0f, 0.005f) << method.name;
+  }
+}
+
+TEST(UserConstraint, SleepsUntilItsRowsStateARate) {
+  check_waking<2>();
+  check_waking<3>();
+}
+
+TEST(UserConstraint, ThatMovesWithTimeIsNotAheadOfIt) {
+  std::vector<Method> all = methods();
+  all.push_back({"split_impulse", Tuning::split_impulse()});
+  all.back().tuning.sleep_s = 0.0f;
+  for (const Method& method : all) {
+    Scene<2> scene(method.tuning, false);
+    scene.world.register_constraint(kCarried, &carried_rows<2>);
+    const BodyId bead = scene.add_ball({{0.0f, 0.0f}}, 2.0f, 0.05f);
+    scene.create(user_joint(scene, bead, kCarried));
+    step(scene.world, 60);
+    EXPECT_NEAR(view(scene.world, bead).position[0], 0.0f, 2.0e-3f) << method.name;
+    step(scene.world, 120);
+    EXPECT_NEAR(view(scene.world, bead).position[0], 2.0f, 2.0e-3f) << method.name;
+  }
 }
 
 /// Leaves the first two parameters as its counts.
