@@ -187,8 +187,10 @@ struct JointDef {
   float length = 0.0f;    ///< m; > 0 for distance; pulley: 0 is what it is at creation.
   float ratio = 1.0f;     ///< Gear and pulley; not 0.
 
-  /// A damped spring, the same for every mass. Distance and weld: 0 is rigid. Motor and target: 0
-  /// is tuning.joint_hertz. Revolute, hinge, prismatic and wheel: about `target`, 0 is none.
+  /// A damped spring, the same for every mass: of what moves while the rigid rest of the joint
+  /// holds; beside another spring, as always in a motor joint, of what moves without that one.
+  /// Distance and weld: 0 is rigid. Motor and target: 0 is tuning.joint_hertz. Revolute, hinge,
+  /// prismatic and wheel: about `target`, 0 is none.
   float hertz = 0.0f;
   float damping_ratio = 0.0f;
   float angular_hertz = 0.0f;  ///< Of the rotation of weld, motor and cone-twist (0: no spring).

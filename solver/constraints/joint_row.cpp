@@ -18,6 +18,30 @@ static void factor_block(int begin, int end, JointRow<D>& joint,
   block.factor(k, end - begin);
 }
 
+/// K of a spring's equalities with the other block, which is rigid, held: K_ss - K_sr K_rr^-1 K_rs,
+/// in place of K_ss. On that mass it swings at its frequency, however far its anchor is from the
+/// centres of mass. @pre both blocks are factored.
+template <int D>
+static void hold_other_block(JointRow<D>& joint) {
+  constexpr int kRows = JointRow<D>::kRows;
+  const int spring = joint.is_spring[0] ? 0 : 1;
+  const BlockRows block = rows_of_block(joint.rows, spring);
+  const Row<D>* rows = joint.rows.rows.data() + block.begin;
+  float k[kRows][kRows];
+  for (int j = 0; j < block.count; ++j) {
+    PairImpulse<D> held;
+    float reaction[kRows];
+    held.add(rows[j], 1.0f);
+    add_reaction(joint, 1 - spring, held, reaction);
+    const RowResponse<D> response = response_to(joint, held);
+    for (int i = j; i < block.count; ++i) k[i][j] = row_coupling(rows[i], response);
+    // A row that the other block decides already has nothing to give.
+    const float alone = row_coupling(rows[j], response_to(joint, rows[j]));
+    if (!(k[j][j] > 1.0e-6f * alone)) k[j][j] = 0.0f;
+  }
+  joint.blocks[spring].factor(k, block.count);
+}
+
 /// K_ll - K_le K_ee^-1 K_el, inverted, and K_ee^-1 K_el: row l with the equalities e held.
 template <int D>
 static HeldRow<D> hold_block(const JointRow<D>& joint, const Row<D>& row) {
@@ -81,6 +105,7 @@ void evaluate_rows(const WorldState<D>& state, Wide time_s, const Motion<D>& a, 
   for (int i = row.rows.count; i < JointRow<D>::kRows; ++i) row.impulse[i] = 0.0f;
   factor_block(0, row.rows.split, row, row.blocks[0]);
   factor_block(row.rows.split, row.rows.count, row, row.blocks[1]);
+  if (row.has_held_spring) hold_other_block(row);
   row.limit_near = row.rows.has_axis && limit_is_near(row, a, b);
   const bool acts = row.spring_enabled || row.limit_near || row.motor_enabled;
   if (!row.rows.has_axis || !acts) return;

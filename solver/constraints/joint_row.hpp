@@ -44,6 +44,7 @@ struct JointRow : ConeLimit<D> {
 
   Softness spring_of[2];  ///< Of the blocks; meant where is_spring.
   bool is_spring[2];
+  bool has_held_spring;  ///< One block is a spring on the mass that it has with the other held.
   float impulse_max[2];  ///< N s and N m s; length of a block's impulse.
   bool holds_point;      ///< Of both bodies, its anchors, at one place (prepare_joints).
   bool parted;           ///< Its points were far apart when the tick began (prepare_joints).
@@ -156,6 +157,17 @@ template <int D>
   b.spin += joint.mass_b.inverse_inertia * impulse.angular_b;
 }
 
+/// The equalities of one block.
+struct BlockRows {
+  int begin;
+  int count;
+};
+template <int D>
+BlockRows rows_of_block(const JointRows<D>& rows, int index) {
+  if (index == 0) return {0, rows.split};
+  return {rows.split, rows.count - rows.split};
+}
+
 /// The same of one row.
 template <int D>
 [[gnu::always_inline]] inline void apply_row(const JointRow<D>& joint, const Row<D>& row,
@@ -180,7 +192,7 @@ void apply_held(JointRow<D>& joint, const Row<D>& row, const HeldRow<D>& held, f
   apply(joint, sum, a, b);
 }
 
-/// M^-1 J^T of one row: how both bodies answer to it.
+/// M^-1 J^T of one row, or of the impulse of several: how both bodies answer to it.
 template <int D>
 struct RowResponse {
   Vec<D> linear_a;
@@ -189,9 +201,9 @@ struct RowResponse {
   Spin<D> angular_b;
 };
 
-template <int D>
+template <int D, class Push>
 [[gnu::always_inline]] inline RowResponse<D> response_to(const JointRow<D>& joint,
-                                                         const Row<D>& row) {
+                                                         const Push& row) {
   return {joint.mass_a.inverse_mass * row.linear_a, joint.mass_a.inverse_inertia * row.angular_a,
           joint.mass_b.inverse_mass * row.linear_b, joint.mass_b.inverse_inertia * row.angular_b};
 }
@@ -201,6 +213,19 @@ template <int D>
 [[gnu::always_inline]] inline float row_coupling(const Row<D>& i, const RowResponse<D>& j) {
   return (dot(i.linear_a, j.linear_a) + dot(i.angular_a, j.angular_a)) +
          (dot(i.linear_b, j.linear_b) + dot(i.angular_b, j.angular_b));
+}
+
+/// What a block of equalities has to push, that an impulse leaves it as satisfied as it was: to be
+/// added to the block's own, N s and N m s; and adds it to that impulse.
+template <int D>
+void add_reaction(const JointRow<D>& joint, int index, PairImpulse<D>& impulse,
+                  float (&reaction)[JointRow<D>::kRows]) {
+  const RowResponse<D> response = response_to(joint, impulse);
+  const BlockRows block = rows_of_block(joint.rows, index);
+  const Row<D>* rows = joint.rows.rows.data() + block.begin;
+  for (int i = 0; i < block.count; ++i) reaction[i] = -row_coupling(rows[i], response);
+  joint.blocks[index].solve(reaction, block.count);
+  for (int i = 0; i < block.count; ++i) impulse.add(rows[i], reaction[i]);
 }
 
 /// Joints of the plane have no cone; these let the kernel say so at no cost.

@@ -96,13 +96,34 @@ void warm_start(float spin_max, JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
   apply(row, sum, a, b);
 }
 
-/// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale lambda over the equalities
-/// [begin, end), held to the block's bound.
+/// What a joint's spring has asked of its rigid block, which is no load that this gives way to;
+/// zeros where there is none. @param asked  N s or N m s, by equality of the block.
+template <int D>
+void asked_by_spring(const JointRow<D>& row, int index, float (&asked)[JointRow<D>::kRows]) {
+  for (float& impulse : asked) impulse = 0.0f;
+  if (!row.has_held_spring || row.is_spring[index]) return;
+  const BlockRows spring = rows_of_block(row.rows, 1 - index);
+  PairImpulse<D> sum;
+  for (int i = spring.begin; i < spring.begin + spring.count; ++i)
+    sum.add(row.rows.rows[static_cast<std::size_t>(i)], row.impulse[i]);
+  add_reaction(row, index, sum, asked);
+}
+
+/// Has the rigid block of a joint answer to what its spring is about to push.
+template <int D>
+void answer_spring(JointRow<D>& row, int index, PairImpulse<D>& sum) {
+  float reaction[JointRow<D>::kRows];
+  add_reaction(row, 1 - index, sum, reaction);
+  const BlockRows rigid = rows_of_block(row.rows, 1 - index);
+  for (int i = 0; i < rigid.count; ++i) row.impulse[rigid.begin + i] += reaction[i];
+}
+
+/// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale load over the equalities
+/// [begin, end), held to the block's bound; the load is lambda less what a spring has asked for.
 template <int D>
 void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow<D>& row,
                  Motion<D>& a, Motion<D>& b) {
-  const int begin = index == 0 ? 0 : row.rows.split;
-  const int count = index == 0 ? row.rows.split : row.rows.count - begin;
+  const auto [begin, count] = rows_of_block(row.rows, index);
   if (count == 0) return;
   // A spring acts in every sweep, a correction in the biased ones; pseudo-velocities know no
   // spring.
@@ -117,11 +138,14 @@ void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow
     change[i] = row_speed_in(sweep, equality, a, b) + softness.bias_rate * equality.error;
   }
   row.blocks[index].solve(change, count);
+  float asked[JointRow<D>::kRows];
+  asked_by_spring(row, index, asked);
   float size = 0.0f;
   for (int i = 0; i < count; ++i) {
     const float old = row.impulse[begin + i];
+    const float load = old - asked[i];
     change[i] = old - context.tuning.over_relaxation *
-                          (softness.mass_scale * change[i] + softness.impulse_scale * old);
+                          (softness.mass_scale * change[i] + softness.impulse_scale * load);
     size += change[i] * change[i];
   }
   const float bound = row.impulse_max[index];
@@ -133,6 +157,7 @@ void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow
             accumulated - row.impulse[begin + i]);
     row.impulse[begin + i] = accumulated;
   }
+  if (row.has_held_spring && row.is_spring[index]) answer_spring(row, index, sum);
   apply(row, sum, a, b);
 }
 
@@ -256,8 +281,7 @@ void correct_joint(const StepContext<D>& context, JointRow<D>& row, Motion<D>& a
     correct_cone(most, row, a, b);
   }
   for (int index = 0; index < 2; ++index) {
-    const int begin = index == 0 ? 0 : row.rows.split;
-    const int count = index == 0 ? row.rows.split : row.rows.count - begin;
+    const auto [begin, count] = rows_of_block(row.rows, index);
     if (row.is_spring[index]) continue;
     float change[JointRow<D>::kRows];
     for (int i = 0; i < count; ++i)

@@ -15,6 +15,8 @@ static void set_blocks(const StepContext<D>& context, const Joint<D>& joint, Joi
   row.is_spring[1] = are_springs.second;
   const bool springs = joint.kind == JointKind::kConeTwist && joint.angular_hertz > 0.0f;
   const bool rubs = joint.kind == JointKind::kConeTwist && !springs && joint.torque_max > 0.0f;
+  // Friction has no frequency, and so needs no mass of its own.
+  row.has_held_spring = are_springs.first != are_springs.second && !rubs;
   row.spring_of[0] = joint.hertz > 0.0f
                          ? spring_softness(joint.hertz, joint.damping_ratio, context.h)
                          : context.motor;

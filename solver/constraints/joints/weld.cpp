@@ -5,7 +5,8 @@ namespace cycloid::solver {
 /// b keeps the pose that it had relative to a at creation.
 ///   C = (anchor_b - anchor_a [m], rotation since creation [rad]): every freedom an equality,
 ///   J as in append_point_rows and append_rotation_rows. Rigid: one block of 3 or 6 rows, impulses
-///   unbounded. Soft (hertz or angular_hertz > 0): point and rotation are a block each.
+///   unbounded. Soft (hertz or angular_hertz > 0): point and rotation are a block each, and a
+///   spring beside a rigid one is on the mass that this leaves it (hold_other_block).
 /// Source: Catto, "Modeling and Solving Constraints" (GDC 2009).
 template <int D>
 void weld_rows(const JointFrame<D>& frame, JointRows<D>& rows) {
