@@ -44,7 +44,10 @@ struct PinId {
   friend bool operator==(const PinId&, const PinId&) = default;
 };
 
-/// Two shapes began or ceased to touch in the last step.
+/// Two shapes began or ceased to touch in the last step. They touch in a step if no more than
+/// Tuning::slop was between them as it began, or if they pushed each other in it: a bounce begins
+/// in its own step, though they may part again before its end, and ends in the first step after it
+/// in which they do not touch.
 struct ContactEvent {
   BodyId body_a;
   BodyId body_b;

@@ -142,7 +142,7 @@ template <int D>
 struct Contact {
   std::uint32_t shape_a = kNone;
   std::uint32_t shape_b = kNone;
-  std::uint32_t touching = 0;
+  std::uint32_t touching = 0;  ///< 1 where they touched in the last tick (ContactEvent).
   std::uint32_t point_count = 0;
   std::array<ContactPoint<D>, Dim<D>::kManifoldPoints> points;
   Spin<D> rolling_impulse;  ///< N m s.

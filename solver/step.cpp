@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "solver/events.hpp"
 #include "solver/floating_point_mode.hpp"
 #include "solver/lane_widths.hpp"
@@ -192,11 +194,27 @@ static bool particles_moved(const StepContext<D>& context, StepScratch<D>& scrat
   return true;
 }
 
+/// Puts the contacts that were apart as the tick began where they belong: those that have pushed
+/// began, or went on; the others ended, if they touched in the tick before.
+template <int D>
+static void list_touches(StepScratch<D>& scratch) {
+  for (const ApartContact& one : scratch.apart) {
+    const bool touches = scratch.contacts[one.contact].touching != 0;
+    const bool touched = one.touched != kNone;
+    if (touches && !touched) scratch.began.push_back(one.contact);
+    if (!touches && touched) scratch.ended.push_back(one.touched);
+  }
+  // Total order: each contact is listed once.
+  std::sort(scratch.began.begin(), scratch.began.end());
+  std::sort(scratch.ended.begin(), scratch.ended.end());
+}
+
 /// What has ended and begun, before the contacts of this tick take the place of the last one's; to
 /// be told once nothing can undo the tick. @param ended  By calls since the last step.
 template <int D>
 static void list_events(const WorldState<D>& state, const std::vector<ContactEvent>& ended,
                         StepScratch<D>& scratch) {
+  list_touches(scratch);
   scratch.events = ended;
   for (const std::uint32_t contact : scratch.ended)
     scratch.events.push_back(contact_event(state, state.contacts[contact], false));

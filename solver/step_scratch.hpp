@@ -132,6 +132,12 @@ struct ContactRoom {
   std::uint32_t used = 0;
 };
 
+/// A contact whose shapes were apart as the tick began: it touches where they push each other.
+struct ApartContact {
+  std::uint32_t contact = kNone;  ///< Place among those of the tick.
+  std::uint32_t touched = kNone;  ///< Place in the state if it touched in the tick before.
+};
+
 /// The contacts of a tick in the order of their shapes, or those of one chunk of its pairs.
 template <int D>
 struct ContactList {
@@ -139,6 +145,7 @@ struct ContactList {
   std::vector<LiveContact<D>> live;  ///< Those with a manifold, in their order.
   std::vector<std::uint32_t> began;  ///< Contacts that touch and did not.
   std::vector<std::uint32_t> ended;  ///< Contacts of the state that no longer touch.
+  std::vector<ApartContact> apart;   ///< Of which list_touches says whether they are in those.
   std::vector<ContactEvent> events;  ///< Of both, to be told once the tick is made.
   std::vector<Manifold<D>> found;    ///< Of a batch of pairs; empty where shapes are apart.
   HeldPairs<D> held_pairs;           ///< For the next tick.

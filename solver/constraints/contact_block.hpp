@@ -82,6 +82,7 @@ struct ContactBlock : FrictionDirections<D, Lanes<W>> {
   LaneBits left;     ///< and lanes in none.
   LaneBits landing;  ///< Of islands: lanes in one that lands (find_landing), and is not taken.
   LaneBits settled;  ///< Of islands: lanes that biased sweeps pass by.
+  LaneBits pushed;   ///< Lanes whose bodies have pushed each other apart in this tick.
   std::uint32_t placed;       ///< Which poses gaps and slides are of (Lot::poses); 0: none.
   std::uint32_t point_count;  ///< The most points of any lane.
   bool turns;                 ///< Some body of some lane can turn; else no row has an angular part.

@@ -55,6 +55,8 @@ struct ContactKernels {
   static void forget_bounces(const BlockRange<D, W>& range);
   /// One sweep of collisions; sets ContactBlock::bounced.
   static void bounce(const StepContext<D>& context, const BlockRange<D, W>& range);
+  /// Adds to ContactBlock::pushed the lanes with a normal impulse. @pre it is of this tick.
+  static void note_pushes(const BlockRange<D, W>& range);
   /// v += M^-1 J^T lambda.
   static void warm_start(const BlockRange<D, W>& range);
   /// What the warm start has left to do: ContactBlock::misses and stirs.

@@ -175,6 +175,7 @@ void rub_projected_contact(const StepContext<D>& context, ContactBlock<D, W>& bl
     auto& point = block.points[i];
     L& impulse = block.extra->position_impulse[i];
     point.normal_impulse = impulse * L(context.inverse_h);
+    block.pushed |= lanes_above_zero(point.normal_impulse);
     const Arms<D, L> arms = arms_of(block, point);
     const L speed = relative_speed(block.normal, arms, a, b);
     const L stop = select(impulse > L(0.0f), -point.normal_mass * speed, L(0.0f));

@@ -119,6 +119,13 @@ void ContactKernels<D, W>::bounce(const StepContext<D>& context, const BlockRang
 }
 
 template <int D, int W>
+void ContactKernels<D, W>::note_pushes(const BlockRange<D, W>& range) {
+  for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block)
+    for (std::uint32_t i = 0; i < block->point_count; ++i)
+      block->pushed |= lanes_above_zero(block->points[i].normal_impulse);
+}
+
+template <int D, int W>
 void ContactKernels<D, W>::warm_start(const BlockRange<D, W>& range) {
   for (ContactBlock<D, W>* block = range.begin; block != range.end; ++block) {
     MotionLanes<D, W> a;

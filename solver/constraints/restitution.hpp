@@ -53,6 +53,7 @@ template <int D, int W>
     const L k = coupling(block, block.normal, arms, block.normal, arms);
     const L impulse = bounces * max(rebound - speed, zero) / select(k > zero, k, L(1.0f));
     extra.bounce_impulse[i] += impulse;
+    block.pushed |= lanes_above_zero(impulse);
     apply_pair(impulse * block.normal, arms, block, a, b);
   }
   return any;

@@ -77,24 +77,40 @@ static void append_resting(const WorldState<D>& state, const std::vector<std::ui
   }
 }
 
+/// Lists those that rest and do not touch, from the given place on.
+template <int D>
+static void list_apart(const std::vector<Contact<D>>& contacts, std::size_t from,
+                       std::vector<ApartContact>& apart) {
+  for (std::size_t i = from; i < contacts.size(); ++i)
+    if (contacts[i].touching == 0) apart.push_back({static_cast<std::uint32_t>(i), kNone});
+}
+
 template <int D>
 void take_in_resting(const WorldState<D>& state, StepScratch<D>& scratch) {
   if (scratch.contacts_are_all) return;
   std::vector<Contact<D>>& merged = scratch.merged_contacts;
   std::vector<std::uint32_t>& places = scratch.contact_places;
+  std::vector<ApartContact>& apart = scratch.apart;
+  const std::size_t listed = apart.size();
   merged.clear();
   places.clear();
   std::uint32_t old = 0;
   std::size_t next = 0;
+  const auto append_below = [&](std::uint64_t key) {
+    const std::size_t from = merged.size();
+    append_resting(state, scratch.kept->active_contacts.places, key, old, next, merged);
+    list_apart(merged, from, apart);
+  };
   for (const Contact<D>& contact : scratch.contacts) {
-    append_resting(state, scratch.kept->active_contacts.places, key_of(contact), old, next, merged);
+    append_below(key_of(contact));
     places.push_back(static_cast<std::uint32_t>(merged.size()));
     merged.push_back(contact);
   }
-  append_resting(state, scratch.kept->active_contacts.places, ~std::uint64_t{0}, old, next, merged);
+  append_below(~std::uint64_t{0});
   scratch.contacts.swap(merged);
   for (LiveContact<D>& live : scratch.live) live.contact = places[live.contact];
   for (std::uint32_t& began : scratch.began) began = places[began];
+  for (std::size_t i = 0; i < listed; ++i) apart[i].contact = places[apart[i].contact];
   scratch.contacts_are_all = true;
 }
 
@@ -121,7 +137,7 @@ static void take_all(const std::vector<Contact<D>>& from, Workers& workers,
 }
 
 template <int D>
-void take_contacts(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
+static void take_stepped(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
   ActiveContacts& active = scratch.kept->active_contacts;
   if (active.are_all) return take_all(scratch.contacts, workers, state.contacts);
   if (scratch.contacts_are_all) {  // Some woke: which ones rest is to be found out anew.
@@ -136,6 +152,23 @@ void take_contacts(Workers& workers, StepScratch<D>& scratch, WorldState<D>& sta
   take_in_resting(state, scratch);
   active.places.assign(scratch.contact_places.begin(), scratch.contact_places.end());
   take_all(scratch.contacts, workers, state.contacts);
+}
+
+/// Contacts and merged ones change places, in ticks that are not the same when a world goes back:
+/// what one has had room for, the other may need.
+template <int D>
+static void make_equal_room(StepScratch<D>& scratch) {
+  std::vector<Contact<D>>& merged = scratch.merged_contacts;
+  if (merged.capacity() == 0 || merged.capacity() == scratch.contacts.capacity()) return;
+  scratch.contacts.reserve(merged.capacity());
+  merged.clear();
+  merged.reserve(scratch.contacts.capacity());
+}
+
+template <int D>
+void take_contacts(Workers& workers, StepScratch<D>& scratch, WorldState<D>& state) {
+  take_stepped(workers, scratch, state);
+  make_equal_room(scratch);
 }
 
 template class OldContacts<2>;

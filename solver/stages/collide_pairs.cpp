@@ -48,7 +48,7 @@ static void take_impulses(const Contact<D>& old, std::uint32_t number, ContactPo
   point.tangent_impulse = old.points[i].tangent_impulse;
 }
 
-/// The points of a manifold as those of a contact; whether they touch.
+/// The points of a manifold as those of a contact; whether they touch as the tick begins.
 template <int D>
 static void take_points(const Manifold<D>& manifold, float slop, const Contact<D>* old,
                         Contact<D>& contact) {
@@ -99,8 +99,10 @@ static void add_contact(const WorldState<D>& state, const OldContacts<D>& contac
   contact.shape_b = pair.shape_b;
   take_points(manifold, state.header.tuning.slop, before, contact);
   const bool touched = persists && before->touching != 0;
-  if (contact.touching != 0 && !touched) list.began.push_back(number);
-  if (contact.touching == 0 && touched) list.ended.push_back(contacts.place(old));
+  if (contact.touching == 0)
+    list.apart.push_back({number, touched ? contacts.place(old) : kNone});
+  else if (!touched)
+    list.began.push_back(number);
   if (persists) ++old;
 }
 
@@ -109,6 +111,7 @@ template <int D>
 static void clear_lists(ContactList<D>& list) {
   list.began.clear();
   list.ended.clear();
+  list.apart.clear();
   clear(list.held_pairs);
   list.room = {};
 }
@@ -203,6 +206,8 @@ static void join_lists(std::size_t chunks, Workers& workers, StepScratch<D>& scr
   for (std::size_t c = 0; c < chunks; ++c) {
     const ContactList<D>& chunk = scratch.contact_chunks[c];
     for (const std::uint32_t began : chunk.began) scratch.began.push_back(contacts + began);
+    for (const ApartContact& one : chunk.apart)
+      scratch.apart.push_back({contacts + one.contact, one.touched});
     scratch.ended.insert(scratch.ended.end(), chunk.ended.begin(), chunk.ended.end());
     append(chunk.held_pairs, scratch.held_pairs);
     contacts += count_of(chunk);
@@ -232,12 +237,12 @@ static void collide_chunks(const Collider<D>& collider, const StepContext<D>& co
 }
 
 /// The contact points of every pair, with last tick's impulses where the same features met, and
-/// which contacts began and ended.
+/// which contacts began and ended, but for those that this tick's impulses decide about.
 ///
 /// Reads pairs, shapes, materials, poses, velocities, who is active, the old contacts and the held
 /// pairs; writes which contacts rest, all others, which of them are live with their manifolds,
-/// began and ended, and the held pairs of the next tick. Contacts are listed in the order of the
-/// pairs, which is that of the shapes' slots, beside the old ones in the same order. One thread
+/// began, ended and apart, and the held pairs of the next tick. Contacts are listed in the order of
+/// the pairs, which is that of the shapes' slots, beside the old ones in the same order. One thread
 /// lists them at once; of several each takes chunks of the pairs, whose lists are joined.
 template <int D>
 void collide_pairs(const StepContext<D>& context, const WorldState<D>& state, Workers& workers,

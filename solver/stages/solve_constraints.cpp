@@ -15,8 +15,9 @@ static void with_bodies(JointRow<D>& row, std::span<Motion<D>> motions, Act&& ac
 /// v += M^-1 J^T lambda with the impulses of the substep before: the solution of a world at rest is
 /// found again at once.
 ///
-/// Reads the accumulated impulses; writes velocities, and the impulses of joints whose guess would
-/// turn a body too far (kGuessTurns_rad). Colour after colour (for_each_by_color).
+/// Reads the accumulated impulses; writes velocities, which contacts have pushed, and the impulses
+/// of joints whose guess would turn a body too far (kGuessTurns_rad). Colour after colour
+/// (for_each_by_color).
 template <int D, int W>
 void warm_start_constraints(const StepContext<D>& context, const Lot& lot, Workers& workers,
                             StepScratch<D>& scratch) {
@@ -32,6 +33,8 @@ void warm_start_constraints(const StepContext<D>& context, const Lot& lot, Worke
         });
       });
   for_each_block_range<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    // Those of the first substep are the last tick's.
+    if (!context.is_first) ContactKernels<D, W>::note_pushes(blocks);
     ContactKernels<D, W>::warm_start(blocks);
   });
 }
@@ -72,6 +75,7 @@ static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>
     const std::uint32_t index = block.contact[lane];
     if (index == kNone) continue;
     Contact<D>& contact = contacts[index];
+    if ((block.pushed >> lane & 1u) != 0) contact.touching = 1;
     for (std::uint32_t p = 0; p < contact.point_count; ++p) {
       contact.points[p].normal_impulse =
           without_sign_of_zero(block.points[p].normal_impulse.raw[lane]);
@@ -86,10 +90,11 @@ static void store_block(const ContactBlock<D, W>& block, std::vector<Contact<D>>
 }
 
 /// Reads the blocks; writes the impulses of the new contacts, each of its own, for the next tick's
-/// warm start.
+/// warm start, and that those touch which have pushed.
 template <int D, int W>
 void store_impulses(const Lot& lot, Workers& workers, StepScratch<D>& scratch) {
   for_all_blocks<D, W>(lot, workers, scratch, [&](const BlockRange<D, W>& blocks) {
+    ContactKernels<D, W>::note_pushes(blocks);
     for (const ContactBlock<D, W>* block = blocks.begin; block != blocks.end; ++block)
       store_block(*block, scratch.contacts);
   });
