@@ -8,16 +8,24 @@
 
 namespace cycloid::solver {
 
+/// How far a body flies in a tick that nothing stops, m.
+template <int D>
+static float unstopped_flight(const StepContext<D>& context, const Body<D>& body) {
+  return body.kind == BodyKind::kKinematic ? context.tick_s * length(body.velocity) : 0.0f;
+}
+
 /// How far apart two shapes may be that get contact points, m: what they fly towards each other in
-/// a tick. Not farther than the body's own reach, where continuous collision stops what flies
-/// farther: a point between two surfaces that are forty metres apart would have an arm of twenty.
+/// a tick. Not farther than the body's own reach and what a kinematic one flies, where continuous
+/// collision stops what flies farther: a point between two surfaces that are forty metres apart
+/// would have an arm of twenty.
 template <int D>
 static float margin_of(const StepContext<D>& context, const Body<D>& a, const Body<D>& b) {
   float flight = context.tick_s * length(b.velocity - a.velocity);
   if (context.tuning.continuous != 0) {
     const float reach_a = a.kind == BodyKind::kStatic ? 0.0f : a.extent;
     const float reach_b = b.kind == BodyKind::kStatic ? 0.0f : b.extent;
-    flight = min(flight, max(reach_a, reach_b));
+    const float unstopped = unstopped_flight(context, a) + unstopped_flight(context, b);
+    flight = min(flight, max(reach_a, reach_b) + unstopped);
   }
   return context.tuning.speculative_distance + flight;
 }

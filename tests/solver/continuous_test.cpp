@@ -1,6 +1,7 @@
 #include <gtest/gtest.h>
 
 #include "solver/motion.hpp"
+#include "tests/solver/space_fixture.hpp"
 #include "tests/solver/world_fixture.hpp"
 
 namespace cycloid::solver {
@@ -299,6 +300,30 @@ TEST(Continuous, NothingIsPushedThroughAThinWall) {
       ASSERT_LT(view(world, pushed).position[0], 3.0f) << speed << ' ' << tick;
     }
   }
+}
+
+// Nothing stops what is kinematic: whatever it reaches in a tick has its contact before it.
+template <int D>
+static void check_kinematic_wall(const ShapeDef<D>& wall) {
+  for (const float speed : {50.0f, 100.0f, 500.0f})
+    for (int phase = 0; phase < 20; ++phase) {
+      WorldDef<D> world_def;
+      world_def.tuning.sleep_s = 0.0f;
+      World<D> world = make_world(world_def);
+      BodyDef<D> def;
+      def.kind = BodyKind::kKinematic;
+      def.position[0] = -3.0f - 0.1f * static_cast<float>(phase);
+      def.velocity[0] = speed;
+      add(world, def, wall);
+      const BodyId id = add_at<D>(world, Vec<D>::zero(), ball<D>(0.1f));
+      step(world, 60);
+      EXPECT_GT(view(world, id).velocity[0], 0.99f * speed) << D << ' ' << speed << ' ' << phase;
+    }
+}
+
+TEST(Continuous, NoKinematicWallPassesABallAtAnySpeedOrPhase) {
+  check_kinematic_wall<2>(box(0.05f, 1.0f));
+  check_kinematic_wall<3>(box_def({{0.05f, 1.0f, 1.0f}}));
 }
 
 }  // namespace cycloid::solver
