@@ -211,14 +211,15 @@ struct StepScratch : ContactList<D> {
   std::vector<std::uint32_t> used_colors;    ///< Bit set by body slot.
   Colors joint_colors;                       ///< Of live joints.
   std::vector<LiveJoint> live_joints;
-  bool colored_joints = false;           ///< joint_coloring is of these, by colour.
-  Coloring joint_coloring;               ///< `order` holds joint slots.
-  Coloring contact_coloring;             ///< `order` holds places of live contacts.
-  std::vector<std::uint8_t> sorted_by;   ///< The colours that gave contact_coloring; else none.
-  std::vector<JointRow<D>> joint_rows;   ///< In the order of joint_coloring.
-  Pins<D> pins;                          ///< Joints that are solved in lanes.
-  Coloring single_rows;                  ///< `order` holds the places of all other joint rows.
-  std::vector<Motion<D>> saved_motions;  ///< Of pseudo-velocity sweeps and of XPBD's substep.
+  bool colored_joints = false;               ///< joint_coloring is of these, by colour.
+  Coloring joint_coloring;                   ///< `order` holds joint slots.
+  Coloring contact_coloring;                 ///< `order` holds places of live contacts.
+  std::vector<std::uint8_t> sorted_by;       ///< The colours that gave contact_coloring; else none.
+  std::vector<JointRow<D>> joint_rows;       ///< In the order of joint_coloring.
+  Pins<D> pins;                              ///< Joints that are solved in lanes.
+  Coloring single_rows;                      ///< `order` holds the places of all other joint rows.
+  std::vector<Motion<D>> saved_motions;      ///< Of pseudo-velocity sweeps and of XPBD's substep.
+  std::vector<Motion<D>> predicted_motions;  ///< Of XPBD's substep, before it projects.
   std::vector<JointRow<D>> saved_rows;
   std::vector<JointBlock<D>> tree_blocks;  ///< Of joint_rows, for the tree solver.
   TreeSolver<D> trees;

@@ -3,7 +3,9 @@
 
 namespace cycloid::solver {
 
-/// v = (x - x_before) / h,  w = turn / h.
+/// v = (x - x_before) / h,  w = w_predicted + turn / h, where the turn is the projection's alone:
+/// of the whole one of a substep a rotation does not know how often it went round, nor in space
+/// what it has changed of the spin.
 template <int D>
 static void take_velocities(const StepContext<D>& context, const WorldState<D>& state,
                             StepScratch<D>& scratch) {
@@ -11,9 +13,11 @@ static void take_velocities(const StepContext<D>& context, const WorldState<D>& 
     if (state.bodies[i].inverse_mass == 0.0f) continue;
     Motion<D>& motion = scratch.motions[i];
     const Motion<D>& before = scratch.saved_motions[i];
+    const Motion<D>& predicted = scratch.predicted_motions[i];
     motion.velocity = context.inverse_h * (motion.delta_position - before.delta_position);
-    motion.spin = context.inverse_h *
-                  turn_of(compose(motion.delta_rotation, conjugate(before.delta_rotation)));
+    motion.spin = predicted.spin +
+                  context.inverse_h *
+                      turn_of(compose(motion.delta_rotation, conjugate(predicted.delta_rotation)));
   }
 }
 
@@ -39,7 +43,8 @@ static void drive_joints(const StepContext<D>& context, StepScratch<D>& scratch)
 ///
 /// Reads masses, arms and joints; writes motions and the points' impulses. Colour after colour.
 /// Source: Mueller et al., "Detailed Rigid Body Simulation with XPBD" (SCA 2020). We deviate:
-/// springs and motors stay velocity rows, and an overlap leaves at push_speed_max at most.
+/// springs and motors stay velocity rows, an overlap leaves at push_speed_max at most, and spins
+/// are those predicted plus what the projection has turned.
 template <int D, int W>
 void project_positions(const StepContext<D>& context, const WorldState<D>& state, Wide time_s,
                        Lot& lot, Workers& workers, StepScratch<D>& scratch) {
@@ -51,6 +56,7 @@ void project_positions(const StepContext<D>& context, const WorldState<D>& state
   drive_joints(context, scratch);
   scratch.saved_motions = scratch.motions;
   integrate_positions(context, state, lot, workers, scratch);
+  scratch.predicted_motions = scratch.motions;
   const std::uint32_t sweeps = context.tuning.position_sweeps;
   for (std::uint32_t sweep = 0; sweep < sweeps; ++sweep) {
     for_each_by_color(scratch.joint_coloring, workers, [&](int i) {

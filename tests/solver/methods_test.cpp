@@ -311,4 +311,26 @@ TEST(SetTuning, OfOtherSubstepsMovesNoStackAtRest) {
   }
 }
 
+// Also more than half a turn in a substep, of which a rotation does not tell the rounds.
+template <int D>
+static void check_free_spin(const Setting& setting, float speed) {
+  WorldDef<D> world_def;
+  world_def.tuning = setting.tuning;
+  World<D> world = make_world(world_def);
+  BodyDef<D> def;
+  def.spin[Dim<D>::kSpin - 1] = speed;
+  const BodyId id = add(world, def, ball<D>(0.2f));
+  step(world, 30);
+  EXPECT_EQ(length(view(world, id).spin - def.spin), 0.0f)
+      << setting.name << " in " << D << "D at " << speed;
+}
+
+TEST(Methods, AFreeBallKeepsItsSpinAtAnySpeedUnderEach) {
+  for (const Setting& setting : method_settings())
+    for (const float speed : {1.0f, 500.0f, 2000.0f, 50000.0f}) {
+      check_free_spin<2>(setting, speed);
+      check_free_spin<3>(setting, speed);
+    }
+}
+
 }  // namespace cycloid::solver
