@@ -124,6 +124,25 @@ TEST(Needle, SpinningAcrossItsLengthKeepsItsEnergy) {
     }
 }
 
+// From the lightest body there may be to a long one of the heaviest: moments of 1e-16 to 1e22 kg
+// m^2, whose third power no float holds.
+TEST(Brick, OfAnySizeKeepsItsEnergy) {
+  for (float size = 2.0e-4f; size < 3.0e5f; size *= 4.0f) {
+    WorldDef<3> world_def;
+    world_def.tuning.sleep_s = 0.0f;
+    World<3> world = make_world(world_def);
+    BodyDef<3> def;
+    def.mass = clamp(1000.0f * size * size * size, 1.0e-9f, 1.0e12f);
+    def.spin = {{2.0f, 1.4f, -0.6f}};
+    const BodyId id = add(world, def, box_def({{size, 0.5f * size, 0.75f * size}}));
+    const FreeMotion start = motion_of(world, id);
+    step(world, 120);
+    const FreeMotion end = motion_of(world, id);
+    EXPECT_NEAR(end.energy() / start.energy(), 1.0, 1e-3) << size;
+    EXPECT_NEAR(std::sqrt(end.momentum_square() / start.momentum_square()), 1.0, 1e-3) << size;
+  }
+}
+
 // Of two metres and a tenth to half of a millimetre: their moments are a million to a hundred
 // million to one, and the drop is 0.8 m, which is 4 m/s.
 TEST(Wire, DroppedOnAPlaneStaysDown) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstring>
+#include <iterator>
 #include <random>
 #include <vector>
 
@@ -18,11 +19,12 @@ static Rotation<3> any_rotation(std::mt19937& random) {
                        identity_rotation<3>());
 }
 
-/// A needle, a disc, a ball, or what does not turn at all.
+/// A needle, a disc, a ball, what does not turn at all, a grain of sand or a mountain.
 static Body<3> any_body(std::mt19937& random) {
-  static constexpr float kMoments[][3] = {
-      {0.001f, 0.4f, 0.4f}, {0.2f, 0.1f, 0.11f}, {0.1f, 0.1f, 0.1f}, {0.0f, 0.0f, 0.0f}};
-  const auto& moments = kMoments[random() % 4];
+  static constexpr float kMoments[][3] = {{0.001f, 0.4f, 0.4f},     {0.2f, 0.1f, 0.11f},
+                                          {0.1f, 0.1f, 0.1f},       {0.0f, 0.0f, 0.0f},
+                                          {1e-16f, 2e-16f, 2e-16f}, {3e21f, 1e21f, 2.5e21f}};
+  const auto& moments = kMoments[random() % std::size(kMoments)];
   Body<3> body{};
   body.rotation = any_rotation(random);
   for (int i = 0; i < 3; ++i) {
