@@ -237,7 +237,8 @@ void solve_points_coupled(const StepContext<D>& context, Sweep sweep, ContactBlo
     }
     k[0][0] = k[0][0] / row.mass_scale;
     L x[kRows];
-    solve_cone(block.friction, k, d, x);
+    const L bounced = block.bounces ? block.extra->bounce_impulse[p] : L(0.0f);
+    solve_cone(block.friction, bounced, k, d, x);
     for (int i = 0; i < kRows; ++i) x[i] = select(point.normal_mass > L(0.0f), x[i], old[i]);
     set_normal_impulse(x[0], arms, block, point, a, b);
     Vec<D, L> impulse = Vec<D, L>::zero();
