@@ -28,6 +28,16 @@ static float rolling_radius(const Shape<D>& shape) {
   return round ? shape.radius : 0.0f;
 }
 
+/// What two shapes roll by: of two round ones the smaller, as a marble on a large ball rolls as it
+/// does on a plane; 0 where neither is round.
+template <int D>
+static float rolling_radius(const Shape<D>& a, const Shape<D>& b) {
+  const float radius_a = rolling_radius(a);
+  const float radius_b = rolling_radius(b);
+  const bool both = radius_a > 0.0f && radius_b > 0.0f;
+  return both ? min(radius_a, radius_b) : max(radius_a, radius_b);
+}
+
 /// What gravity and forces do to a body without contacts, m/s^2.
 template <int D>
 static Vec<D> free_acceleration(const StepContext<D>& context, const Body<D>& body) {
@@ -64,8 +74,7 @@ static void set_materials(const StepContext<D>& context, const WorldState<D>& st
     block.bounces = true;
   }
   if (materials.rolling_resistance == 0.0f && materials.twist_resistance == 0.0f) return;
-  const float radius = max(rolling_radius(state.shapes[contact.shape_a]),
-                           rolling_radius(state.shapes[contact.shape_b]));
+  const float radius = rolling_radius(state.shapes[contact.shape_a], state.shapes[contact.shape_b]);
   if (radius == 0.0f) return;
   set_lane(extra.rolling, lane, materials.rolling_resistance * radius);
   set_lane(extra.twist, lane, materials.twist_resistance * radius);

@@ -155,6 +155,35 @@ TEST(RollingResistance, HoldsABallOnASlopeUnderXpbdToo) {
   check_slope<3>({row_settings().back()});
 }
 
+/// A marble that has rolled on and turned about the normal for half a second.
+template <int D>
+static BodyView<D> marble_on(float ground_radius) {
+  World<D> world = world_with<D>(Tuning{}, {1.0f, 0.0f, 0.05f, 0.05f});
+  if (ground_radius > 0.0f) {
+    BodyDef<D> ground;
+    ground.kind = BodyKind::kStatic;
+    ground.position[1] = -ground_radius;
+    add(world, ground, ball<D>(ground_radius));
+  } else {
+    add_ground<D>(world, up<D>());
+  }
+  BodyDef<D> def;
+  def.position[1] = 0.125f;
+  def.velocity[0] = 2.0f;
+  def.spin[Dim<D>::kSpin - 1] = -16.0f;
+  if (D == 3) def.spin[1] = 30.0f;
+  const BodyId id = add(world, def, ball<D>(0.125f));
+  step(world, 30);
+  return view(world, id);
+}
+
+// By the larger radius it would be stopped dead.
+TEST(RollingResistance, SlowsAMarbleOnALargeBallAsOnAPlane) {
+  EXPECT_NEAR(marble_on<2>(1000.0f).velocity[0], marble_on<2>(0.0f).velocity[0], 0.005f);
+  EXPECT_NEAR(marble_on<3>(1000.0f).velocity[0], marble_on<3>(0.0f).velocity[0], 0.005f);
+  EXPECT_NEAR(marble_on<3>(1000.0f).spin[1], marble_on<3>(0.0f).spin[1], 0.05f);
+}
+
 // Without resistance a ball that rolls without slip goes on as it is.
 template <int D>
 static void check_even_roll(const RowSetting& setting) {
