@@ -96,6 +96,8 @@ static void start_anew(const WorldState<D>& state, Workers& workers, StepScratch
   cache.dormant.clear();
   cache.forgotten.clear();
   cache.fat.clear();
+  // Who was active is not known, so those whose contacts are listed as active may be asleep now.
+  scratch.kept->active_contacts.is_known = false;
   scratch.kept->active_bodies.forget_all();
   clear(scratch.kept->held_pairs);
   list_jointed_bodies(state, cache);
