@@ -184,7 +184,8 @@ bool is_reachable(const Joint<D>& joint) {
     def.target = 0.0f;
   }
   if (joint.kind == JointKind::kPulley) {
-    if (!within(def.length, 0.0f, kMeasuredMax)) return false;
+    // a + ratio b, and a ratio may be negative.
+    if (!within(def.length, -kMeasuredMax, kMeasuredMax)) return false;
     def.length = 0.0f;
   }
   // A rope may be created shorter than a rod, and keeps its length when its limits are off.

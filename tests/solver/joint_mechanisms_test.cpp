@@ -1,4 +1,5 @@
 #include <algorithm>
+#include <cstddef>
 
 #include "tests/solver/joint_scene.hpp"
 
@@ -94,11 +95,14 @@ static void check_atwood(float ratio) {
     EXPECT_NEAR(-view(scene.world, a).velocity[1], expected, 0.01f * std::abs(expected))
         << method.name << " ratio " << ratio;
     EXPECT_LT(scene.error(id), 0.002f) << method.name;
+    std::vector<std::byte> state;
+    scene.world.encode(state);
+    EXPECT_TRUE(scene.world.decode(state).ok()) << "ratio " << ratio;
   }
 }
 
 TEST(Pulley, AcceleratesAsAtwoodsMachine) {
-  for (const float ratio : {1.0f, 2.0f}) {
+  for (const float ratio : {1.0f, 2.0f, -1.5f}) {
     check_atwood<2>(ratio);
     check_atwood<3>(ratio);
   }
