@@ -118,6 +118,7 @@ Error World<D>::set_damping(BodyId id, float linear, float angular) {
     body.linear_damping = linear;
     body.angular_damping = angular;
   });
+  wake(state_, id.index, kept_->active_bodies);
   return {};
 }
 

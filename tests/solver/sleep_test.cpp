@@ -117,6 +117,9 @@ TEST(Sleep, EveryCallThatCouldMatterWakes) {
   expect_awake("material", [](auto& world, auto&, BodyId) {
     EXPECT_TRUE(world.set_material(0, {0.0f, 0.0f, 0.0f}).ok());
   });
+  expect_awake("damping", [](auto& world, auto& boxes, BodyId) {
+    EXPECT_TRUE(world.set_damping(boxes[0], 0.0f, 0.0f).ok());
+  });
   expect_awake("floor", [](auto& world, auto&, BodyId floor) {
     EXPECT_TRUE(world.destroy_body(floor).ok());
   });
