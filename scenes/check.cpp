@@ -4,6 +4,7 @@
 #include "scenes/build.hpp"
 #include "scenes/catalogue.hpp"
 #include "scenes/unused.hpp"
+#include "solver/validate.hpp"
 
 namespace cycloid::scenes {
 
@@ -35,6 +36,9 @@ static void check_control(const Control& control, const std::string& path,
   const bool steers = control.effect == Effect::kSteering;
   if (steers && !is_within(control.value[0], -1.6f, 1.6f))
     complain("value", "has to be an angle within 1.6 rad");
+  const bool drives = control.effect == Effect::kMotorSpeed;
+  if (drives && !is_within(control.value[0], -solver::kSpinMax, solver::kSpinMax))
+    complain("value", "has to be a speed within 1e5 rad/s or m/s");
   if (!are_within(control.position, 1.0e6f)) complain("position", "is out of range");
   if (!are_within(control.velocity, 1.0e4f)) complain("velocity", "is out of range");
   if (control.limit < 1 || control.limit > 256) complain("limit", "has to be 1 to 256");

@@ -33,6 +33,19 @@ TEST(Mistakes, OfAPartIsNotSaidAgainOfAllThatNameIt) {
             "/joints/0/body_b: names no body: 'c'\n");
 }
 
+// The world would refuse such a speed in each tick, and nobody would hear of it.
+TEST(Mistakes, OfAControlWhoseSpeedNoMotorTakes) {
+  const auto said_of = [](const char* value) {
+    return said(R"({"bodies": [{"name": "a", "kind": "static"}, {"name": "b", "mass": 1}],
+      "joints": [{"name": "j", "body_a": "a", "body_b": "b", "motor": "speed", "motor_max": 1}],
+      "seats": [{"controls": [{"effect": "motor_speed", "target": "j", "value": [)" +
+                std::string(value) + "]}]}]}");
+  };
+  EXPECT_EQ(said_of("-100000"), "");
+  EXPECT_EQ(said_of("100001"),
+            "/seats/0/controls/0/value: has to be a speed within 1e5 rad/s or m/s\n");
+}
+
 TEST(Mistakes, OfALimitAreSaidOnceWithBothNumbers) {
   EXPECT_EQ(said(R"({"limits": {"bodies": 2}, "bodies": [
       {"name": "a", "mass": 1}, {"name": "b", "mass": 1}, {"name": "c", "mass": 1},
