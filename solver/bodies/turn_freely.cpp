@@ -15,8 +15,7 @@ static Vec<3> turned_back_change(const Spin<3>& turn, const Vec<3>& v) {
   return rotate_back(rotation_by(turn), v) - v;
 }
 
-void turn_freely(float h, const Body<3>& body, Motion<3>& motion) {
-  if (keeps_its_spin(body)) return turn_by(h * motion.spin, motion);
+static void turn_tumbling(float h, const Body<3>& body, Motion<3>& motion) {
   const Rotation<3> before = compose(motion.delta_rotation, body.rotation);
   const Spin<3> spin = rotate_back(before, motion.spin);
   const Spin<3> momentum = times(body.inertia.m, spin);
@@ -36,6 +35,14 @@ void turn_freely(float h, const Body<3>& body, Motion<3>& motion) {
   const Rotation<3> after = compose(motion.delta_rotation, body.rotation);
   motion.spin = rotate(turned, motion.spin) +
                 rotate(after, times(body.inverse_inertia.m, turned_back_change(turn, momentum)));
+}
+
+void turn_freely(float h, const Body<3>& body, Motion<3>& motion) {
+  if (keeps_its_spin(body)) return turn_by(h * motion.spin, motion);
+  const float turn = h * length(motion.spin);
+  int parts = 1;
+  while (turn > kTurnMost * static_cast<float>(parts) && parts < kTurnParts) parts *= 2;
+  for (int i = 0; i < parts; ++i) turn_tumbling(h / static_cast<float>(parts), body, motion);
 }
 
 }  // namespace cycloid::solver

@@ -56,6 +56,12 @@ inline constexpr int kMidpointIterations = 8;
 /// Where they end: |moved|^2 over |spin|^2.
 inline constexpr float kMidpointAccuracy = 1.0e-14f;
 
+/// How far a body that tumbles turns at once, rad, and into how many parts a substep is divided so
+/// that it turns no further. Beyond a whole turn there are spins of the middle that answer to other
+/// energies, and Newton's method may find one of those. @pre Lanes turn less (kSmallTurnSquare).
+inline constexpr float kTurnMost = 1.0f;
+inline constexpr int kTurnParts = 256;
+
 /// Whether a body turns as any other, for whose inertia all axes are alike, or does not turn.
 bool keeps_its_spin(const Body<3>& body);
 

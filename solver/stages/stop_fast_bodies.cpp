@@ -1,6 +1,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "solver/bodies/turn_freely.hpp"
 #include "solver/collision/bounds.hpp"
 #include "solver/queries/separation.hpp"
 #include "solver/stages/fast_bodies.hpp"
@@ -164,11 +165,23 @@ static FastBody* stopped_at(const WorldState<D>& state, StepScratch<D>& scratch,
   return place == 0 ? nullptr : &scratch.fast_bodies[place - 1];
 }
 
+static void keep_spin_in_body(const Body<2>&, const Rotation<2>&, Motion<2>&) {}
+/// What tumbles keeps the spin that it has about its own axes, so that it keeps its energy: about
+/// the axes of the world it would be that of another pose, and of a rod the spin about its length
+/// would be one across it, a thousand times as strong.
+/// @param whole  How far it would have turned.
+static void keep_spin_in_body(const Body<3>& body, const Rotation<3>& whole, Motion<3>& motion) {
+  if (keeps_its_spin(body)) return;
+  const Rotation<3> end = compose(whole, body.rotation);
+  const Rotation<3> stopped = compose(motion.delta_rotation, body.rotation);
+  motion.spin = rotate(stopped, rotate_back(end, motion.spin));
+}
+
 /// Continuous collision: a fast body ends the tick where it first meets what it did not touch
-/// before. Its velocity stays; the contact of the next tick answers to it. The rest of its way is
-/// lost, and what is jointed to it ends with it (spread_stops). So what is pushed on is stopped
-/// only at what does not yield: what pushes it would run over it, and a crowd that is driven would
-/// end up in its driver.
+/// before. Its velocity stays, and its spin in its own frame; the contact of the next tick answers
+/// to them. The rest of its way is lost, and what is jointed to it ends with it (spread_stops). So
+/// what is pushed on is stopped only at what does not yield: what pushes it would run over it, and
+/// a crowd that is driven would end up in its driver.
 ///
 /// Reads motions, shapes, joints and the meetings; writes the fraction of each meeting, from the
 /// ways of all as the sweeps left them, then the least for each fast body, then those of what is
@@ -202,7 +215,9 @@ void stop_fast_bodies(const StepContext<D>& context, const WorldState<D>& state,
   spread_stops(context, state, scratch);
   for (const Stop& stop : scratch.stops) {
     Motion<D>& motion = scratch.motions[stop.slot];
+    const Rotation<D> whole = motion.delta_rotation;
     motion.delta_rotation = rotation_by(stop.fraction * turn_in(context, motion));
+    keep_spin_in_body(state.bodies[stop.slot], whole, motion);
     motion.delta_position = stop.fraction * motion.delta_position;
   }
 }
