@@ -171,8 +171,8 @@ enum class MotorKind : std::uint32_t {
   kOff = 0,
   kSpeed,  ///< Holds motor_speed; has no memory of where it was.
   /// Holds the coordinate at target + drive_amplitude sin(2 pi drive_hertz t). An angle goes there
-  /// the shorter way round, as a spring about `target` does; between limits that both lie within
-  /// half a turn, the way that they leave.
+  /// the shorter way round, as a spring about `target` does; between limits that are less than a
+  /// turn apart, the way that they leave.
   kPosition,
 };
 

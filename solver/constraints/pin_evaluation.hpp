@@ -99,6 +99,24 @@ template <int N, int D, int W>
   couple.mass = select(gives, L(1.0f) / select(gives, left, L(1.0f)), L(0.0f));
 }
 
+/// angle_near.
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> angle_near(const Lanes<W>& angle, const Lanes<W>& middle) {
+  using L = Lanes<W>;
+  const L beyond = angle - middle;
+  const L less = select(beyond > L(kPi), angle - L(2.0f * kPi), angle);
+  return select(beyond < L(-kPi), angle + L(2.0f * kPi), less);
+}
+
+/// angle_between_limits.
+template <int D, int W>
+[[gnu::always_inline]] inline Lanes<W> angle_between_limits(const Lanes<W>& angle,
+                                                            const PinBlock<D, W>& block) {
+  const PinTurns<D, W>& turns = *block.turns;
+  const Lanes<W> middle = Lanes<W>(0.5f) * (turns.lower + turns.upper);
+  return block.form.has_limits ? angle_near(angle, middle) : angle;
+}
+
 /// Above 0 where a limit of the axis pushes already or could be reached soon (limit_is_near).
 template <int D, int W>
 [[gnu::always_inline]] inline Lanes<W> limit_is_near(float reach_s, const PinTurns<D, W>& turns,
@@ -128,7 +146,7 @@ template <int N, int W>
   PinTurns<2, W>& turns = *block.turns;
   const Rotation<2, Lanes<W>> relative = relative_of(frame, turns);
   turns.axis.direction[0] = Lanes<W>(1.0f);
-  turns.axis.angle = atan2(relative[1], relative[0]);
+  turns.axis.angle = angle_between_limits(atan2(relative[1], relative[0]), block);
   hold_couple<N>(block, turns.axis);
   if (block.form.has_limits) turns.near = limit_is_near(limit_reach_s, turns, frame.motions);
 }
@@ -167,8 +185,9 @@ template <int W>
 /// twist_row.
 template <int W>
 [[gnu::always_inline]] inline void set_twist(const PinFrame<3, W>& frame, const PinAxes<W>& axes,
-                                             PinTurns<3, W>& turns) {
+                                             PinBlock<3, W>& block) {
   using L = Lanes<W>;
+  PinTurns<3, W>& turns = *block.turns;
   const Rotation<3, L> q = relative_of(frame, turns);
   const L along = dot(Vec<3, L>{{q[0], q[1], q[2]}}, turns.axis_b);
   const auto flip = (q[3] < L(0.0f)) | ((q[3].raw == 0.0f) & (along < L(0.0f)));
@@ -177,7 +196,7 @@ template <int W>
   const auto apart = both < L(kLeastTogether);
   const L scale = select(apart, L(0.0f), L(1.0f) / select(apart, L(1.0f), both));
   turns.axis.direction = scale * (axes.of_a + axes.of_b);
-  turns.axis.angle = select(apart, L(0.0f), angle);
+  turns.axis.angle = select(apart, L(0.0f), angle_between_limits(angle, block));
 }
 
 /// swing_row.
@@ -213,7 +232,7 @@ template <int N, int W>
   if (form.rubs) factor_rubbing(block);
   if (!form.has_motor && !form.has_limits) return;
   const PinAxes<W> axes = axes_of(frame, turns);
-  set_twist(frame, axes, turns);
+  set_twist(frame, axes, block);
   if (form.has_limits) turns.near = limit_is_near(limit_reach_s, turns, frame.motions);
   if (form.has_cone) {
     set_swing(axes, turns.swing);

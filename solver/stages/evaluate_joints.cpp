@@ -21,12 +21,12 @@ static void drive_target(const Joint<D>& joint, Wide time_s, JointRow<D>& row) {
 }
 
 /// A drive about an angle goes the shorter way round: the coordinate leaps from pi to -pi, and what
-/// has swung past there would be driven on, turn after turn. Between limits that both lie within
-/// half a turn it cannot, and they leave one way, which may be the longer.
+/// has swung past there would be driven on, turn after turn. Limits that are less than a turn apart
+/// leave one way, which may be the longer.
 template <int D>
 static void take_shorter_way(JointKind kind, JointRow<D>& row) {
   if (kind != JointKind::kRevolute && kind != JointKind::kHinge) return;
-  const bool is_limited = row.limit_enabled && row.lower > -kPi && row.upper < kPi;
+  const bool is_limited = row.limit_enabled && row.upper - row.lower < 2.0f * kPi;
   if (!row.rows.has_axis || is_limited) return;
   row.spring_rest = nearest_turn(row.spring_rest, row.rows.axis.error);
 }

@@ -1,9 +1,11 @@
 #include "solver/constraints/joints/joints.hpp"
+#include "solver/constraints/joints/unwrap.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
 
-/// The coordinate is the angle of b relative to a, rad in (-pi, pi]: J = (0, -1, 0, 1).
+/// The coordinate is the angle of b relative to a, rad in (-pi, pi] or between its limits:
+/// J = (0, -1, 0, 1).
 static void set_angle_axis(const JointFrame<2>& frame, JointRows<2>& rows) {
   const Joint<2>& joint = frame.joint;
   // Most pins only pin: an arctangent that nothing asks for is a third of their cost.
@@ -11,7 +13,7 @@ static void set_angle_axis(const JointFrame<2>& frame, JointRows<2>& rows) {
   rows.has_axis = true;
   rows.axis.angular_a[0] = -1.0f;
   rows.axis.angular_b[0] = 1.0f;
-  rows.axis.error = atan2(frame.relative[1], frame.relative[0]);
+  rows.axis.error = angle_between_limits(atan2(frame.relative[1], frame.relative[0]), joint);
 }
 /// A ball joint turns about every axis; it has no coordinate.
 static void set_angle_axis(const JointFrame<3>&, JointRows<3>&) {}

@@ -1,6 +1,7 @@
 #include "solver/constraints/joints/swing_twist.hpp"
 
 #include "solver/constraints/joint_bounds.hpp"
+#include "solver/constraints/joints/unwrap.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
@@ -44,7 +45,7 @@ Row<3> twist_row(const JointFrame<3>& frame, const Vec<3>& axis, const AxisPair&
   const float both = 1.0f + dot(pair.of_a, pair.of_b);
   if (both < kLeastTogether) return {};
   const float angle = twist_angle(frame.relative, rotate_back(frame.joint.reference, axis));
-  return couple((1.0f / both) * (pair.of_a + pair.of_b), angle);
+  return couple((1.0f / both) * (pair.of_a + pair.of_b), angle_between_limits(angle, frame.joint));
 }
 
 Row<3> swing_row(const AxisPair& pair) {

@@ -2,6 +2,7 @@
 
 #include "solver/dim.hpp"
 #include "solver/direct/wide.hpp"
+#include "solver/state.hpp"
 #include "solver/trig.hpp"
 
 namespace cycloid::solver {
@@ -30,6 +31,21 @@ inline float nearest_turn(float angle, float near) {
   if (!is_beyond) return angle;
   const auto whole = static_cast<int>(turns + (turns < 0.0 ? -0.5 : 0.5));
   return static_cast<float>(static_cast<Wide>(angle) - static_cast<Wide>(whole) * kTurn);
+}
+
+/// `angle` [rad, in (-pi, pi]] within half a turn of `middle` [rad, within 3.2]: itself, to the
+/// bit, where it is so already.
+inline float angle_near(float angle, float middle) {
+  const float beyond = angle - middle;
+  if (beyond > kPi) return angle - 2.0f * kPi;
+  return beyond < -kPi ? angle + 2.0f * kPi : angle;
+}
+
+/// An angle between limits is that of the turn in which these lie: past half a turn it would leap
+/// to the far side of both, and the one that it has passed would push it on.
+template <int D>
+float angle_between_limits(float angle, const Joint<D>& joint) {
+  return joint.limit_enabled != 0 ? angle_near(angle, 0.5f * (joint.lower + joint.upper)) : angle;
 }
 
 }  // namespace cycloid::solver
