@@ -107,8 +107,7 @@ void evaluate_rows(const WorldState<D>& state, Wide time_s, const Motion<D>& a, 
   factor_block(row.rows.split, row.rows.count, row, row.blocks[1]);
   if (row.has_held_spring) hold_other_block(row);
   row.limit_near = row.rows.has_axis && limit_is_near(row, a, b);
-  const bool acts = row.spring_enabled || row.limit_near || row.motor_enabled;
-  if (!row.rows.has_axis || !acts) return;
+  if (!drives_act(row)) return;
   row.axis = hold_block(row, row.rows.axis);
   row.motor = row.rows.has_motor_axis ? hold_block(row, row.rows.motor_axis) : row.axis;
   if (row.limit_near) hold_cone(row);

@@ -228,6 +228,12 @@ void add_reaction(const JointRow<D>& joint, int index, PairImpulse<D>& impulse,
   for (int i = 0; i < block.count; ++i) impulse.add(rows[i], reaction[i]);
 }
 
+/// Whether spring, motor or limits do anything now. @pre evaluate_rows.
+template <int D>
+bool drives_act(const JointRow<D>& row) {
+  return row.rows.has_axis && (row.spring_enabled || row.limit_near || row.motor_enabled);
+}
+
 /// Joints of the plane have no cone; these let the kernel say so at no cost.
 inline bool has_cone(const JointRow<2>&) {
   return false;

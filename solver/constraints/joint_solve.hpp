@@ -118,8 +118,29 @@ void answer_spring(JointRow<D>& row, int index, PairImpulse<D>& sum) {
   for (int i = 0; i < rigid.count; ++i) row.impulse[rigid.begin + i] += reaction[i];
 }
 
+inline float less_asked_by_cone(const JointRow<2>&, int, float load) {
+  return load;
+}
+inline float less_asked_by_cone(const JointRow<3>& row, int i, float load) {
+  const bool acts = has_cone(row) && row.limit_near;
+  return acts ? load - row.held_cone.reaction[i] * row.cone_impulse : load;
+}
+
+/// The impulse of equality i of the first block without what spring, motor and limits have asked of
+/// it (apply_held), N s or N m s. @pre drives_act.
+template <int D>
+float load_of_equality(const JointRow<D>& row, int i) {
+  const float along = row.spring_impulse + (row.lower_impulse - row.upper_impulse);
+  const float asked = row.axis.reaction[i] * along + row.motor.reaction[i] * row.motor_impulse;
+  return less_asked_by_cone(row, i, row.impulse[i] + asked);
+}
+
 /// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale load over the equalities
-/// [begin, end), held to the block's bound; the load is lambda less what a spring has asked for.
+/// [begin, end), held to the block's bound.
+///
+/// A soft constraint gives way to its load. What a joint's own drives and spring ask of its
+/// equalities is none: to give way to that would turn the body by what it gives, against the drive,
+/// and where a long arm makes the reaction large, further than the drive turns it (`LongArms.*`).
 template <int D>
 void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow<D>& row,
                  Motion<D>& a, Motion<D>& b) {
@@ -140,10 +161,12 @@ void solve_block(const StepContext<D>& context, Sweep sweep, int index, JointRow
   row.blocks[index].solve(change, count);
   float asked[JointRow<D>::kRows];
   asked_by_spring(row, index, asked);
+  const bool is_driven =
+      index == 0 && sweep == Sweep::kBiased && !row.is_spring[0] && drives_act(row);
   float size = 0.0f;
   for (int i = 0; i < count; ++i) {
     const float old = row.impulse[begin + i];
-    const float load = old - asked[i];
+    const float load = (is_driven ? load_of_equality(row, i) : old) - asked[i];
     change[i] = old - context.tuning.over_relaxation *
                           (softness.mass_scale * change[i] + softness.impulse_scale * load);
     size += change[i] * change[i];
@@ -187,12 +210,23 @@ void solve_drives(JointRow<D>& row, Motion<D>& a, Motion<D>& b) {
   row.motor_impulse = accumulated;
 }
 
+/// What the motor presses a limit with, N s or N m s: at most what the limit bears. The limit is
+/// soft to all else and bears this rigidly, or a strong motor would push it in by its force over
+/// frequency squared.
+/// @param sign  As of solve_limit.
+template <int D>
+float pressed_by_motor(const JointRow<D>& row, float sign, float impulse) {
+  if (row.rows.has_motor_axis) return 0.0f;
+  return max(min(-sign * row.motor_impulse, impulse), 0.0f);
+}
+
 /// One limit along `axis`: `room` is what is left until it [m or rad], the impulse pushes away from
 /// it.
+/// @param pressed  Of the impulse, what the limit does not give way to (pressed_by_motor).
 template <int D>
 void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, const Row<D>& axis,
-                 const HeldRow<D>& held, float room, float sign, float& impulse, Motion<D>& a,
-                 Motion<D>& b) {
+                 const HeldRow<D>& held, float room, float sign, float pressed, float& impulse,
+                 Motion<D>& a, Motion<D>& b) {
   Softness softness = kRigid;
   float bias = 0.0f;
   if (room > 0.0f) {
@@ -202,8 +236,8 @@ void solve_limit(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, c
     bias = softness.bias_rate * room;
   }
   const float speed = sign * row_speed_in(sweep, axis, a, b);
-  const float change =
-      -held.mass * softness.mass_scale * (speed + bias) - softness.impulse_scale * impulse;
+  const float change = -held.mass * softness.mass_scale * (speed + bias) -
+                       softness.impulse_scale * (impulse - pressed);
   const float accumulated = max(impulse + change, 0.0f);
   apply_held(row, axis, held, sign * (accumulated - impulse), a, b);
   impulse = accumulated;
@@ -214,7 +248,7 @@ inline void solve_cone(const StepContext<3>& context, Sweep sweep, JointRow<3>& 
                        Motion<3>& b) {
   if (!has_cone(row)) return;
   solve_limit(context, sweep, row, row.rows.cone_axis, row.held_cone,
-              row.cone - row.rows.cone_axis.error, -1.0f, row.cone_impulse, a, b);
+              row.cone - row.rows.cone_axis.error, -1.0f, 0.0f, row.cone_impulse, a, b);
 }
 
 /// One sweep over a joint. The limit comes after the motor, so it wins; the equalities come last,
@@ -229,9 +263,9 @@ void solve(const StepContext<D>& context, Sweep sweep, JointRow<D>& row, Motion<
     if (row.limit_near) {
       const float coordinate = row.rows.axis.error;
       solve_limit(context, sweep, row, row.rows.axis, row.axis, coordinate - row.lower, 1.0f,
-                  row.lower_impulse, a, b);
+                  pressed_by_motor(row, 1.0f, row.lower_impulse), row.lower_impulse, a, b);
       solve_limit(context, sweep, row, row.rows.axis, row.axis, row.upper - coordinate, -1.0f,
-                  row.upper_impulse, a, b);
+                  pressed_by_motor(row, -1.0f, row.upper_impulse), row.upper_impulse, a, b);
     }
     if (row.limit_near) solve_cone(context, sweep, row, a, b);
   }

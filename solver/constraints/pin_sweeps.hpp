@@ -42,12 +42,21 @@ template <int N, int D, int W>
   turns.motor_impulse = accumulated;
 }
 
+/// As that of rows. @pre the couple is the motor's axis.
+template <int D, int W>
+[[gnu::always_inline]] inline Lanes<W> pressed_by_motor(const PinBlock<D, W>& block, float sign,
+                                                        const Lanes<W>& impulse) {
+  if (!block.form.has_motor) return Lanes<W>(0.0f);
+  return max(min(Lanes<W>(-sign) * block.turns->motor_impulse, impulse), Lanes<W>(0.0f));
+}
+
 /// One limit along a couple, as solve_limit of rows.
 /// @param sign  1 of a lower one, -1 of an upper.
 template <int N, int D, int W>
 [[gnu::always_inline]] inline void solve_limit(const StepContext<D>& context, Sweep kind,
                                                const Couple<D, W>& couple, const Lanes<W>& room,
-                                               float sign, Lanes<W>& impulse, PinBlock<D, W>& block,
+                                               float sign, const Lanes<W>& pressed,
+                                               Lanes<W>& impulse, PinBlock<D, W>& block,
                                                PinMotions<D, W>& motions) {
   using L = Lanes<W>;
   const Softness soft = softness_of<W>(context, kind);
@@ -56,7 +65,7 @@ template <int N, int D, int W>
   const L mass_scale = select(open, L(1.0f), L(soft.mass_scale));
   const L impulse_scale = select(open, L(0.0f), L(soft.impulse_scale));
   const L speed = L(sign) * speed_of_couple(couple, motions);
-  const L change = -couple.mass * mass_scale * (speed + bias) - impulse_scale * impulse;
+  const L change = -couple.mass * mass_scale * (speed + bias) - impulse_scale * (impulse - pressed);
   const L accumulated = max(impulse + change, L(0.0f));
   turn_held<N>(couple, L(sign) * (accumulated - impulse), block, motions);
   impulse = accumulated;
@@ -72,8 +81,8 @@ template <int N, int W>
   if (!block.form.has_cone) return;
   PinTurns<3, W>& turns = *block.turns;
   L impulse = turns.cone_impulse;
-  solve_limit<N>(context, kind, turns.swing, turns.cone - turns.swing.angle, -1.0f, impulse, block,
-                 motions);
+  solve_limit<N>(context, kind, turns.swing, turns.cone - turns.swing.angle, -1.0f, L(0.0f),
+                 impulse, block, motions);
   turns.cone_impulse = select(turns.near > L(0.0f), impulse, turns.cone_impulse);
 }
 
@@ -109,8 +118,10 @@ template <int N, int D, int W>
   const L angle = turns.axis.angle;
   L lower = turns.lower_impulse;
   L upper = turns.upper_impulse;
-  solve_limit<N>(context, kind, turns.axis, angle - turns.lower, 1.0f, lower, block, motions);
-  solve_limit<N>(context, kind, turns.axis, turns.upper - angle, -1.0f, upper, block, motions);
+  solve_limit<N>(context, kind, turns.axis, angle - turns.lower, 1.0f,
+                 pressed_by_motor(block, 1.0f, lower), lower, block, motions);
+  solve_limit<N>(context, kind, turns.axis, turns.upper - angle, -1.0f,
+                 pressed_by_motor(block, -1.0f, upper), upper, block, motions);
   solve_cone<N>(context, kind, block, motions);
   const auto near = turns.near > L(0.0f);
   turns.lower_impulse = select(near, lower, turns.lower_impulse);
@@ -149,13 +160,49 @@ template <int W>
   motions.b.spin += turned_by<3, W>(block.mass_b, impulse);
 }
 
-/// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale lambda, as solve_block.
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> less_asked_by_cone(const PinBlock<2, W>&, int,
+                                                          const Lanes<W>& load) {
+  return load;
+}
+template <int W>
+[[gnu::always_inline]] inline Lanes<W> less_asked_by_cone(const PinBlock<3, W>& block, int i,
+                                                          const Lanes<W>& load) {
+  if (!block.form.has_cone) return load;
+  const PinTurns<3, W>& turns = *block.turns;
+  const auto near = turns.near > Lanes<W>(0.0f);
+  return select(near, load - turns.swing.reaction[i] * turns.cone_impulse, load);
+}
+
+/// An equality's impulse without what motor and limits have asked of it (as that of rows).
+/// Another lane's limit must not show, not even in the sign of a zero. @pre limits or a motor act.
+template <int D, int W>
+[[gnu::always_inline]] inline Lanes<W> load_of_equality(const PinBlock<D, W>& block, int i) {
+  using L = Lanes<W>;
+  const PinTurns<D, W>& turns = *block.turns;
+  const L& reaction = turns.axis.reaction[i];
+  const L asked =
+      reaction * (turns.lower_impulse - turns.upper_impulse) + reaction * turns.motor_impulse;
+  const L load = block.impulse[i] + asked;
+  const auto near = turns.near > L(0.0f);
+  const L taken = block.form.has_motor ? load : select(near, load, block.impulse[i]);
+  return block.form.has_limits ? less_asked_by_cone(block, i, taken) : taken;
+}
+
+/// Whether motor or limits push in any lane, so that what they ask of the equalities is known.
+template <int D, int W>
+[[gnu::always_inline]] inline bool turns_act(const PinBlock<D, W>& block) {
+  return block.form.has_motor || (block.form.has_limits && any_above_zero(block.turns->near));
+}
+
+/// lambda' = lambda - mass_scale K^-1 (Jv + bias_rate C) - impulse_scale load, as solve_block.
 template <int N, int D, int W>
 [[gnu::always_inline]] inline void solve_equalities(const StepContext<D>& context, Sweep kind,
                                                     PinBlock<D, W>& block,
                                                     PinMotions<D, W>& motions) {
   using L = Lanes<W>;
   const Softness soft = softness_of<W>(context, kind);
+  const bool is_asked = kind == Sweep::kBiased && turns_act(block);
   L change[Dim<D>::kPinEqualities];
   for (int i = 0; i < N; ++i)
     change[i] = speed_of_equality(block, i, motions) + L(soft.bias_rate) * block.error[i];
@@ -163,8 +210,9 @@ template <int N, int D, int W>
   PinImpulse<D, W> sum;
   for (int i = 0; i < N; ++i) {
     const L old = block.impulse[i];
+    const L load = is_asked ? load_of_equality(block, i) : old;
     const L wanted = old - L(context.tuning.over_relaxation) *
-                               (L(soft.mass_scale) * change[i] + L(soft.impulse_scale) * old);
+                               (L(soft.mass_scale) * change[i] + L(soft.impulse_scale) * load);
     add_equality(block, i, wanted - old, sum);
     block.impulse[i] = wanted;
   }
