@@ -16,6 +16,7 @@ void BodyMatrix<D>::begin(int nodes) {
   eliminated_.assign(count, 0);
   is_last_.assign(count, 0);
   links_.clear();
+  marks_.assign(count, Mark{-1, -1});
   steps_.assign(1, EliminationStep{-1, 0, 0});
   entries_.clear();
   targets_.clear();
@@ -39,7 +40,11 @@ int BodyMatrix<D>::join(int a, int b) {
   const bool a_has_less =
       degree_[static_cast<std::size_t>(a)] < degree_[static_cast<std::size_t>(b)];
   const int found = a_has_less ? find(a, b) : find(b, a);
-  if (found >= 0) return found;
+  return found >= 0 ? found : add_link(a, b);
+}
+
+template <int D>
+int BodyMatrix<D>::add_link(int a, int b) {
   const int block = static_cast<int>(beside_.size());
   beside_.emplace_back();
   for (const auto& [from, to] : {std::pair{a, b}, std::pair{b, a}}) {
@@ -49,6 +54,17 @@ int BodyMatrix<D>::join(int a, int b) {
     ++degree_[static_cast<std::size_t>(from)];
   }
   return block;
+}
+
+/// Marks the neighbours of a node with their blocks: to search its list for each of them would take
+/// the square of it, and lists grow as nodes fill in.
+template <int D>
+void BodyMatrix<D>::mark_neighbours(int node) {
+  for (int i = first_link_[static_cast<std::size_t>(node)]; i >= 0;) {
+    const Link& link = links_[static_cast<std::size_t>(i)];
+    marks_[static_cast<std::size_t>(link.node)] = {node, link.block};
+    i = link.next;
+  }
 }
 
 /// By which nodes stand in line: the degree, behind all those that are not put last.
@@ -86,9 +102,14 @@ int BodyMatrix<D>::eliminate(int node) {
   std::sort(entries_.begin() + static_cast<std::ptrdiff_t>(begin), entries_.end(),
             [](const ColumnEntry& a, const ColumnEntry& b) { return a.node < b.node; });
   for (std::size_t i = begin; i < entries_.size(); ++i) {
-    --degree_[static_cast<std::size_t>(entries_[i].node)];
-    for (std::size_t j = begin; j < i; ++j)
-      targets_.push_back(join(entries_[i].node, entries_[j].node));
+    const int one = entries_[i].node;
+    --degree_[static_cast<std::size_t>(one)];
+    if (i > begin) mark_neighbours(one);
+    for (std::size_t j = begin; j < i; ++j) {
+      const int other = entries_[j].node;
+      const Mark mark = marks_[static_cast<std::size_t>(other)];
+      targets_.push_back(mark.neighbour_of == one ? mark.block : add_link(one, other));
+    }
   }
   for (std::size_t i = begin; i < entries_.size(); ++i) wait(entries_[i].node);
   if (column_.size() < entries_.size() - begin) column_.resize(entries_.size() - begin);

@@ -77,6 +77,11 @@ class BodyMatrix {
     int block;
     int next;
   };
+  /// Whose neighbour a node was found to be last, and the block between them: links are for good.
+  struct Mark {
+    int neighbour_of;
+    int block;
+  };
   /// A node in line to be eliminated.
   struct Waiting {
     int rank;   ///< Its degree, behind all others if it was put last.
@@ -89,6 +94,8 @@ class BodyMatrix {
   };
 
   int find(int a, int b) const;
+  int add_link(int a, int b);
+  void mark_neighbours(int node);
   int rank(int node) const;
   void wait(int node);
   int eliminate(int node);
@@ -102,6 +109,7 @@ class BodyMatrix {
   std::vector<std::uint8_t> eliminated_;
   std::vector<std::uint8_t> is_last_;
   std::vector<Link> links_;
+  std::vector<Mark> marks_;             ///< By node.
   std::vector<Waiting> line_;           ///< least_first.hpp.
   std::vector<EliminationStep> steps_;  ///< One more than there are.
   std::vector<ColumnEntry> entries_;
