@@ -1,6 +1,5 @@
 #include <algorithm>
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <nlohmann/json.hpp>
 #include <set>
@@ -15,7 +14,7 @@ namespace cycloid::scenes {
 using Json = nlohmann::json;
 
 static constexpr std::size_t kTextBytesMax = 64u << 20;
-static constexpr int kDepthMax = 16;
+static constexpr std::size_t kDepthMax = 16;
 
 /// Changes of one letter that lead from a to b.
 static std::size_t edit_distance(const std::string& a, const std::string& b) {
@@ -165,42 +164,42 @@ class JsonReader {
 };
 
 /// Watches the parser for what the library lets pass: keys given twice, and depth.
-class ParseGuard {
+class ParseGuard : public nlohmann::json_sax<Json> {
  public:
   explicit ParseGuard(std::vector<Mistake>& mistakes) : mistakes_(mistakes) {}
 
-  bool operator()(int depth, Json::parse_event_t event, Json& parsed) {
-    if (depth > kDepthMax) {
-      if (!too_deep_) mistakes_.push_back({"", "is nested deeper than a scene can be"});
-      too_deep_ = true;
-      return false;
-    }
-    switch (event) {
-      case Json::parse_event_t::object_start:
-      case Json::parse_event_t::array_start:
-        levels_.push_back({event == Json::parse_event_t::array_start, 0, "", {}});
-        break;
-      case Json::parse_event_t::object_end:
-      case Json::parse_event_t::array_end:
-        levels_.pop_back();
-        go_on();
-        break;
-      case Json::parse_event_t::key:
-        take_key(parsed.get<std::string>());
-        break;
-      case Json::parse_event_t::value:
-        go_on();
-        break;
-    }
+  bool null() override { return take_value(); }
+  bool boolean(bool) override { return take_value(); }
+  bool number_integer(std::int64_t) override { return take_value(); }
+  bool number_unsigned(std::uint64_t) override { return take_value(); }
+  bool number_float(double, const std::string&) override { return take_value(); }
+  bool string(std::string&) override { return take_value(); }
+  bool binary(Json::binary_t&) override { return take_value(); }
+
+  bool start_object(std::size_t) override { return begin_level(false); }
+  bool start_array(std::size_t) override { return begin_level(true); }
+  bool end_object() override { return end_level(); }
+  bool end_array() override { return end_level(); }
+
+  bool key(std::string& key) override {
+    if (!is_within_depth()) return false;
+    levels_.back().key = key;
+    if (!levels_.back().keys.insert(key).second && mistakes_.size() < kMistakesMax)
+      mistakes_.push_back({path(), "is given twice in one object"});
     return true;
   }
 
-  /// Of what is being read.
-  std::string path() const {
-    std::string path;
-    for (const Level& level : levels_)
-      path += "/" + (level.is_array ? std::to_string(level.index) : level.key);
-    return path;
+  bool parse_error(std::size_t, const std::string&, const Json::exception& error) override {
+    // The library numbers what is out of range from 401 on, and nothing else.
+    if (error.id / 100 == 4) {
+      mistakes_.push_back({path(), "is out of range"});
+      return false;
+    }
+    // The library's sentence holds line and column; its "[json.exception...]" tag says nothing.
+    const std::string what = error.what();
+    const std::size_t tag = what.find("] ");
+    mistakes_.push_back({"", tag == std::string::npos ? what : what.substr(tag + 2)});
+    return false;
   }
 
  private:
@@ -212,10 +211,35 @@ class ParseGuard {
     std::set<std::string> keys;
   };
 
-  void take_key(const std::string& key) {
-    levels_.back().key = key;
-    if (!levels_.back().keys.insert(key).second && mistakes_.size() < kMistakesMax)
-      mistakes_.push_back({path(), "is given twice in one object"});
+  /// Of what is being read.
+  std::string path() const {
+    std::string path;
+    for (const Level& level : levels_)
+      path += "/" + (level.is_array ? std::to_string(level.index) : level.key);
+    return path;
+  }
+
+  bool is_within_depth() {
+    if (levels_.size() <= kDepthMax) return true;
+    mistakes_.push_back({"", "is nested deeper than a scene can be"});
+    return false;
+  }
+
+  bool take_value() {
+    go_on();
+    return is_within_depth();
+  }
+
+  bool begin_level(bool is_array) {
+    if (!is_within_depth()) return false;
+    levels_.push_back({is_array, 0, "", {}});
+    return true;
+  }
+
+  bool end_level() {
+    levels_.pop_back();
+    go_on();
+    return true;
   }
 
   void go_on() {
@@ -224,7 +248,6 @@ class ParseGuard {
 
   std::vector<Mistake>& mistakes_;
   std::vector<Level> levels_;
-  bool too_deep_ = false;
 };
 
 Loaded from_json(std::string_view text, Untuned untuned) {
@@ -233,21 +256,10 @@ Loaded from_json(std::string_view text, Untuned untuned) {
     loaded.mistakes.push_back({"", "is larger than 64 MiB"});
     return loaded;
   }
-  Json json;
   ParseGuard guard(loaded.mistakes);
-  try {
-    json = Json::parse(text, std::ref(guard));
-  } catch (const Json::out_of_range&) {
-    loaded.mistakes.push_back({guard.path(), "is out of range"});
-    return loaded;
-  } catch (const Json::exception& error) {
-    // The library's sentence holds line and column; its "[json.exception...]" tag says nothing.
-    const std::string what = error.what();
-    const std::size_t tag = what.find("] ");
-    loaded.mistakes.push_back({"", tag == std::string::npos ? what : what.substr(tag + 2)});
-    return loaded;
-  }
+  Json::sax_parse(text, &guard);
   if (!loaded.mistakes.empty()) return loaded;
+  const Json json = Json::parse(text);
   Scene scene;
   JsonReader reader(json, "", loaded.mistakes);
   reader.read_part(scene);

@@ -79,6 +79,17 @@ TEST(HostileWork, ManyNamesAreFoundInTime) {
   EXPECT_TRUE(scenes::check(scene).empty());
 }
 
+/// What a parser made quadratic that looked among all siblings at the end of each object.
+TEST(HostileWork, ManyObjectsAreReadInTime) {
+  constexpr std::size_t kBodies = 400000;
+  std::string text = R"({"dimension":2,"limits":{"bodies":500000},"bodies":[)";
+  for (std::size_t i = 0; i < kBodies; ++i) text += R"({"kind":"static"},)";
+  text.back() = ']';
+  const scenes::Loaded loaded = scenes::from_json(text + "}");
+  ASSERT_TRUE(loaded.scene);
+  EXPECT_EQ(loaded.scene->bodies.size(), kBodies);
+}
+
 TEST(HostileWork, MistakesHaveAnEnd) {
   std::string text = "{\"dimension\":2,\"bodies\":[";
   for (int i = 0; i < 30000; ++i) text += "{\"x\":1},";
