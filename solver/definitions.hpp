@@ -97,8 +97,7 @@ struct Filter {
 struct Material {
   float friction = 0.6f;            ///< Coulomb coefficient, >= 0.
   float restitution = 0.0f;         ///< 0 to 1.
-  float rolling_resistance = 0.0f;  ///< Moment over normal force and the smaller radius of balls
-                                    ///< and capsules.
+  float rolling_resistance = 0.0f;  ///< Moment over force and smaller radius; balls and capsules.
   float twist_resistance = 0.0f;    ///< The same about the normal, against spin; only in space.
 };
 
