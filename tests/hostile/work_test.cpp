@@ -81,9 +81,9 @@ TEST(HostileWork, ManyNamesAreFoundInTime) {
 
 /// What a parser made quadratic that looked among all siblings at the end of each object.
 TEST(HostileWork, ManyObjectsAreReadInTime) {
-  constexpr std::size_t kBodies = 400000;
+  constexpr std::size_t kBodies = 200000;
   std::string text = R"({"dimension":2,"limits":{"bodies":500000},"bodies":[)";
-  for (std::size_t i = 0; i < kBodies; ++i) text += R"({"kind":"static"},)";
+  for (std::size_t i = 0; i < kBodies; ++i) text += R"({"mass":1},)";
   text.back() = ']';
   const scenes::Loaded loaded = scenes::from_json(text + "}");
   ASSERT_TRUE(loaded.scene);
