@@ -58,8 +58,10 @@ inline constexpr float kMidpointAccuracy = 1.0e-14f;
 
 /// How far a body that tumbles turns at once, rad, and into how many parts a substep is divided so
 /// that it turns no further. Beyond a whole turn there are spins of the middle that answer to other
-/// energies, and Newton's method may find one of those. @pre Lanes turn less (kSmallTurnSquare).
-inline constexpr float kTurnMost = 1.0f;
+/// energies, and Newton's method may find one of those. Lanes leave to this whatever would turn by
+/// 1 rad at its spin (kSmallTurnSquare, of half a step), give or take rounding: this bound has to
+/// stay above that, or a body near it would move otherwise alone than in lanes.
+inline constexpr float kTurnMost = 1.1f;
 inline constexpr int kTurnParts = 256;
 
 /// Whether a body turns as any other, for whose inertia all axes are alike, or does not turn.
