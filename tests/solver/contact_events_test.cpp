@@ -2,28 +2,17 @@
 
 #include <vector>
 
-#include "tests/solver/world_fixture.hpp"
+#include "tests/solver/method_settings.hpp"
 
 namespace cycloid::solver {
 
-struct EventSetting {
-  const char* name;
-  Tuning tuning;
-};
-
-static std::vector<EventSetting> event_settings() {
-  Tuning islands = Tuning::soft_step();
-  islands.contact_block = ContactBlockRows::kIsland;
-  return {{"soft_loaded", Tuning::soft_loaded()},
-          {"soft_step", Tuning::soft_step()},
-          {"soft_islands", islands},
-          {"pgs", Tuning::pgs()},
-          {"split_impulse", Tuning::split_impulse()},
-          {"pgs_ngs", Tuning::pgs_ngs()},
-          {"pgs_ngs_block", Tuning::pgs_ngs_block()},
-          {"pgs_soft", Tuning::pgs_soft()},
-          {"tgs_ngs", Tuning::tgs_ngs()},
-          {"xpbd", Tuning::xpbd()}};
+/// Those and the two that solve islands at once, which let what rests sleep.
+static std::vector<Setting> event_settings() {
+  std::vector<Setting> all = method_settings();
+  all.push_back({"soft_loaded", Tuning::soft_loaded()});
+  all.push_back({"soft_islands", Tuning::soft_step()});
+  all.back().tuning.contact_block = ContactBlockRows::kIsland;
+  return all;
 }
 
 /// Weightless and without friction.
@@ -54,7 +43,7 @@ static std::vector<ContactEvent> contact_events_of(World<D>& world, int ticks) {
 
 /// From ten heights, so that ticks end at different distances from the ground.
 template <int D>
-static void check_bounces(const EventSetting& setting, float restitution, float speed) {
+static void check_bounces(const Setting& setting, float restitution, float speed) {
   for (int phase = 0; phase < 10; ++phase) {
     World<D> world = bouncing_world<D>(setting.tuning, restitution);
     const BodyId ground = add_ground<D>(world, up<D>());
@@ -68,7 +57,7 @@ static void check_bounces(const EventSetting& setting, float restitution, float 
 }
 
 TEST(ContactEvents, ABounceBeginsAndEndsOnceUnderEachMethod) {
-  for (const EventSetting& setting : event_settings())
+  for (const Setting& setting : event_settings())
     for (const float restitution : {1.0f, 0.5f, 0.0f})
       for (const float speed : {3.0f, 10.0f, 30.0f, 100.0f}) {
         check_bounces<2>(setting, restitution, speed);
@@ -78,7 +67,7 @@ TEST(ContactEvents, ABounceBeginsAndEndsOnceUnderEachMethod) {
 
 // What does not restitute is at the surface for less than a tick where it only grazes it.
 template <int D>
-static void check_graze(const EventSetting& setting) {
+static void check_graze(const Setting& setting) {
   World<D> world = bouncing_world<D>(setting.tuning, 0.0f);
   BodyDef<D> def;
   def.kind = BodyKind::kStatic;
@@ -89,7 +78,7 @@ static void check_graze(const EventSetting& setting) {
 }
 
 TEST(ContactEvents, AGrazeBeginsAndEndsOnceUnderEachMethod) {
-  for (const EventSetting& setting : event_settings()) {
+  for (const Setting& setting : event_settings()) {
     check_graze<2>(setting);
     check_graze<3>(setting);
   }

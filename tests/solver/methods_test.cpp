@@ -3,29 +3,11 @@
 #include <utility>
 #include <vector>
 
-#include "tests/solver/world_fixture.hpp"
+#include "tests/solver/method_settings.hpp"
 
 namespace cycloid::solver {
 
 /// What each named setting of the solver promises.
-
-struct Setting {
-  const char* name;
-  Tuning tuning;
-};
-
-static std::vector<Setting> method_settings() {
-  std::vector<Setting> all = {{"soft_step", Tuning::soft_step()},
-                              {"pgs", Tuning::pgs()},
-                              {"split_impulse", Tuning::split_impulse()},
-                              {"pgs_ngs", Tuning::pgs_ngs()},
-                              {"pgs_ngs_block", Tuning::pgs_ngs_block()},
-                              {"pgs_soft", Tuning::pgs_soft()},
-                              {"tgs_ngs", Tuning::tgs_ngs()},
-                              {"xpbd", Tuning::xpbd()}};
-  for (Setting& setting : all) setting.tuning.sleep_s = 0.0f;
-  return all;
-}
 
 static bool soft_at_60_hertz(const Setting& setting) {
   return setting.tuning.stabilisation == Stabilisation::kSoft && setting.tuning.substeps == 1;
