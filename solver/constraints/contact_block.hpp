@@ -28,12 +28,12 @@ struct ContactExtra {
   L rolling;  ///< Of ContactBlock::rolls: rolling resistance times radius, moment over impulse, m.
   L twist;    ///< The same about the normal, m; 0 in the plane.
   Spin<D, L> rolling_impulse;
-  L turns_a;   ///< Of ContactBlock::has_ball: 1, or 0 where the point lies on a ball: it does not
-  L turns_b;   ///< turn with the body.
-  L is_round;  ///< Of ContactBlock::follows: 1 where both are balls about their centres of mass.
-  L radius_a;
+  L turns_a;   ///< Of ContactBlock::has_round: 1, or 0 where the point lies on a ball about the
+  L turns_b;   ///< centre of mass: it does not turn with the body.
+  L radius_a;  ///< Of ContactBlock::has_round: by which the shapes are rounded, m.
   L radius_b;
-  L touch;                      ///< Of ContactBlock::touches: a gap below it counts as none, m.
+  L is_round;  ///< Of ContactBlock::follows: 1 where both are balls about their centres of mass.
+  L touch;     ///< Of ContactBlock::touches: a gap below it counts as none, m.
   L position_impulse[kPoints];  ///< Of XPBD's position pass in this substep, kg m.
   L saved_impulse[kPoints];     ///< The normal impulses while pseudo-velocities are solved.
 };
@@ -90,7 +90,7 @@ struct ContactBlock : FrictionDirections<D, Lanes<W>> {
   bool rolls;                 ///< Some lane resists rolling or twist.
   bool bounces;               ///< Some lane restitutes.
   bool bounced;               ///< Some did in the last sweep of bounces.
-  bool has_ball;              ///< Some point lies on a ball about its centre of mass.
+  bool has_round;             ///< Some point lies on a shape with a radius.
   bool follows;               ///< Some lane is round.
   bool touches;               ///< Some lane has a `touch` above 0.
   LaneMass<D, W> mass_a;
@@ -138,17 +138,39 @@ template <int D, int W>
   return {point.r_a + block.slide_a, arm_b_of(block, point) + block.slide_b};
 }
 
-/// How far a point has turned away from where it was about each centre, m: what lies on a ball does
-/// not.
+/// How far from the centre of a body what turns with it lies below a point on its surface: the
+/// point itself, or where the shape is rounded by a radius the point of its core, the middle of a
+/// ball or the axis of a capsule. Around that the surface is round, whichever way it has turned.
+/// @param outward  Towards the other body, of unit length.
+template <int D, int W>
+[[gnu::always_inline]] inline Vec<D, Lanes<W>> core_arm(const Vec<D, Lanes<W>>& arm,
+                                                        const Lanes<W>& radius,
+                                                        const Lanes<W>& separation,
+                                                        const Vec<D, Lanes<W>>& outward) {
+  using L = Lanes<W>;
+  const L depth = select(radius > L(0.0f), radius + L(0.5f) * separation, L(0.0f));
+  return arm - depth * outward;
+}
+
+template <int D, int W>
+[[gnu::always_inline]] inline Vec<D, Lanes<W>> turned_by_pose(const MotionLanes<D, W>& motion,
+                                                              const Vec<D, Lanes<W>>& arm) {
+  return rotate(motion.delta_rotation, arm) - arm;
+}
+
+/// How far a point has turned away from where it was about each centre, m.
 template <int D, int W>
 [[gnu::always_inline]] inline Arms<D, Lanes<W>> turned_away(
     const ContactBlock<D, W>& block, const typename ContactBlock<D, W>::Point& point,
     const MotionLanes<D, W>& a, const MotionLanes<D, W>& b) {
   const Vec<D, Lanes<W>> r_b = arm_b_of(block, point);
-  const Arms<D, Lanes<W>> turned = {rotate(a.delta_rotation, point.r_a) - point.r_a,
-                                    rotate(b.delta_rotation, r_b) - r_b};
-  if (!block.has_ball) return turned;
-  return {block.extra->turns_a * turned.r_a, block.extra->turns_b * turned.r_b};
+  if (!block.has_round) return {turned_by_pose(a, point.r_a), turned_by_pose(b, r_b)};
+  const ContactExtra<D, W>& extra = *block.extra;
+  const Vec<D, Lanes<W>> core_a =
+      core_arm<D, W>(point.r_a, extra.radius_a, point.separation, block.normal);
+  const Vec<D, Lanes<W>> core_b =
+      core_arm<D, W>(r_b, extra.radius_b, point.separation, -block.normal);
+  return {extra.turns_a * turned_by_pose(a, core_a), extra.turns_b * turned_by_pose(b, core_b)};
 }
 
 /// Separation along the normal of the tick's start at the present poses.

@@ -19,7 +19,8 @@ struct LiveContact {
   std::uint32_t material_b;
   bool a_is_ball;  ///< About its centre of mass.
   bool b_is_ball;
-  bool has_extra;  ///< Balls, or materials, ask for a ContactExtra.
+  bool has_round;  ///< One shape has a radius.
+  bool has_extra;  ///< That, or materials, ask for a ContactExtra.
 };
 
 /// What blocks of contacts are filled from.

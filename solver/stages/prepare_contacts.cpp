@@ -45,18 +45,18 @@ static Vec<D> free_acceleration(const StepContext<D>& context, const Body<D>& bo
   return body.gravity_scale * context.gravity + body.inverse_mass * body.force;
 }
 
-/// What balls about their centres of mass ask for.
+/// What shapes with a radius ask for, balls about their centres of mass before all.
 template <int D, int W>
-static void set_balls(const WorldState<D>& state, const Contact<D>& contact,
+static void set_round(const WorldState<D>& state, const Contact<D>& contact,
                       const LiveContact<D>& live, int lane, ContactExtra<D, W>& extra,
                       ContactBlock<D, W>& block) {
-  block.has_ball = true;
+  block.has_round = true;
   set_lane(extra.turns_a, lane, live.a_is_ball ? 0.0f : 1.0f);
   set_lane(extra.turns_b, lane, live.b_is_ball ? 0.0f : 1.0f);
-  if (!live.a_is_ball || !live.b_is_ball) return;
-  set_lane(extra.is_round, lane, 1.0f);
   set_lane(extra.radius_a, lane, state.shapes[contact.shape_a].radius);
   set_lane(extra.radius_b, lane, state.shapes[contact.shape_b].radius);
+  if (!live.a_is_ball || !live.b_is_ball) return;
+  set_lane(extra.is_round, lane, 1.0f);
   block.follows = true;
 }
 
@@ -82,15 +82,14 @@ static void set_materials(const StepContext<D>& context, const WorldState<D>& st
   block.rolls = true;
 }
 
-/// What balls and materials ask for of the contact in one lane.
+/// What round shapes and materials ask for of the contact in one lane.
 template <int D, int W>
 static void set_extra(const StepContext<D>& context, const WorldState<D>& state,
                       const StepScratch<D>& scratch, const LiveContact<D>& live, int lane,
                       std::size_t place, ContactBlocks<D, W>& contacts) {
   ContactBlock<D, W>& block = contacts.blocks[place];
   const Contact<D>& contact = scratch.contacts[live.contact];
-  if (live.a_is_ball || live.b_is_ball)
-    set_balls(state, contact, live, lane, contacts.extra_of(place), block);
+  if (live.has_round) set_round(state, contact, live, lane, contacts.extra_of(place), block);
   const ContactMaterials materials =
       materials_of<D>(state.materials[live.material_a], state.materials[live.material_b]);
   if (materials.restitution > 0.0f || materials.rolling_resistance > 0.0f ||

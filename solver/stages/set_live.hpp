@@ -59,7 +59,8 @@ template <int D>
   live.material_b = b.material;
   live.a_is_ball = is_centred_ball(a);
   live.b_is_ball = is_centred_ball(b);
-  live.has_extra = live.a_is_ball || live.b_is_ball || materials.has_extra();
+  live.has_round = a.radius > 0.0f || b.radius > 0.0f;
+  live.has_extra = live.has_round || materials.has_extra();
 }
 
 }  // namespace cycloid::solver
