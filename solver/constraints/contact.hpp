@@ -67,6 +67,10 @@ template <int D, int W>
   return soft;
 }
 
+/// How deep, in slops, a point that bounces may have come by the rounding of a gap that it was to
+/// close to nothing, and still counts as not arrived.
+inline constexpr float kArrival = 0.01f;
+
 /// A gap s > 0 may be closed but not crossed in this substep: bias = s / h. Overlap beyond the slop
 /// is pushed out by the block's softness, its first `stiff_overlap` twice as fast, which makes a
 /// spring there twice as stiff, and all at most at `push_speed_max`. Pseudo-velocities answer to
@@ -89,7 +93,8 @@ template <int D, int W>
     if (!block.bounces) return row;
     const L about_to = select(block.extra->restitution > L(0.0f), L(1.0f), L(0.0f));
     const L fast = select(speed < L(-context.tuning.restitution_threshold), about_to, L(0.0f));
-    row.bias = select(apart, select(fast > L(0.0f), -speed, row.bias), row.bias);
+    const L goes_on = select(point.gap > L(-kArrival * context.tuning.slop), fast, L(0.0f));
+    row.bias = select(goes_on > L(0.0f), -speed, row.bias);
     return row;
   }
   const L rate = sweep == Sweep::kPseudo ? L(context.pseudo.bias_rate) : soft.bias_rate;
