@@ -43,6 +43,12 @@ enum class Op : std::uint8_t {
   kCreatePin,
   kDestroyPin,
   kRegisters,
+  kCreateCrowd,  ///< More bodies in one place than one worker takes at once; with a floor.
+  kCreateLand,   ///< What only static bodies have, anywhere.
+  kCreateSolid,  ///< Shapes and settings that no other command makes.
+  kCreateCloth,  ///< A rope or a cloth: particles, links and perhaps a pin.
+  kCreateDrive,  ///< A joint with settings that kCreateJoint does not make.
+  kSurface,      ///< A material with all its values good.
   kCount,
 };
 
@@ -56,6 +62,10 @@ enum class Revisit : std::uint8_t {
   kSettings,      ///< Other workers, lanes and lots from now on.
   kStranger,      ///< From now on another world steps in between.
   kLook,          ///< Every const call.
+  kTrim,          ///< Memory is given back; workers rest, or no longer do.
+  kTraced,        ///< From now on, or no longer, steps are traced.
+  kAfterEdits,    ///< Saved; other commands; restored.
+  kReplay,        ///< Back to where this was asked before, and all again since then.
   kCount,
 };
 

@@ -8,7 +8,6 @@ using solver::BodyKind;
 using solver::JointKind;
 using solver::ShapeDef;
 using solver::ShapeKind;
-using solver::Tuning;
 using solver::Vec;
 
 /// No power of two, so that sums round.
@@ -16,8 +15,7 @@ static float scaled(int value) {
   return 0.07f * static_cast<float>(value);
 }
 
-/// A size from `value`: above 0, of 0.1 m to a few m.
-static float size_of(int value) {
+float size_of(int value) {
   const int magnitude = value < 0 ? -value : value;
   return 0.1f + 0.013f * static_cast<float>(magnitude);
 }
@@ -51,62 +49,6 @@ solver::Rotation<D> rotation_of(int value) {
   return solver::normalized_or(rotation, solver::identity_rotation<D>());
 }
 
-Tuning tuning_of(std::uint32_t choice) {
-  const Tuning methods[] = {
-      Tuning::soft_step(),     Tuning::pgs(),           Tuning::xpbd(),
-      Tuning::split_impulse(), Tuning::pgs_ngs(),       Tuning::tgs_ngs(),
-      Tuning::pgs_soft(),      Tuning::pgs_ngs_block(), Tuning::soft_loaded()};
-  Tuning tuning = methods[choice % 9];
-  choice /= 9;
-  if (choice % 4 == 1) tuning.order = solver::Order::kId;
-  if (choice % 4 == 2) tuning.order = solver::Order::kReverse;
-  choice /= 4;
-  if (choice % 3 == 1) tuning.contact_block = solver::ContactBlockRows::kNormals;
-  if (choice % 3 == 2) tuning.contact_block = solver::ContactBlockRows::kNormalFriction;
-  choice /= 3;
-  if (choice % 2 == 1) tuning.joint_solver = solver::JointSolver::kDirect;
-  choice /= 2;
-  // A twentieth of a second, so that short cases sleep too.
-  const float sleeps_s[] = {0.05f, 0.5f, 0.0f};
-  tuning.sleep_s = sleeps_s[choice % 3];
-  if (choice % 3 == 0) tuning.sleep_speed = 0.5f;
-  choice /= 3;
-  tuning.continuous = 1 - choice % 2;
-  choice /= 2;
-  if (choice % 2 == 1) tuning.warm_starting = 0.7f;
-  choice /= 2;
-  if (choice % 2 == 1 && tuning.stabilisation == solver::Stabilisation::kSoft)
-    tuning.contact_block = solver::ContactBlockRows::kIsland;
-  tuning.particle_substeps = 6;
-  return tuning;
-}
-
-Tuning tuning_after(const Tuning& now, const Command& command) {
-  const Tuning other = tuning_of(command.a + 64 * command.b);
-  if (command.b % 2 == 0) return other;
-  Tuning changed = now;
-  switch (command.b / 2 % 6) {
-    case 0:
-      changed.order = static_cast<solver::Order>(command.a % 3);
-      break;
-    case 1:
-      changed.substeps = 1 + command.a % 8;
-      break;
-    case 2:
-      changed.contact_block = other.contact_block;
-      break;
-    case 3:
-      changed.joint_solver = other.joint_solver;
-      break;
-    case 4:
-      changed.sleep_s = other.sleep_s;
-      break;
-    default:
-      changed.warm_starting = other.warm_starting;
-  }
-  return changed;
-}
-
 template <int D>
 solver::WorldDef<D> world_of(const Case& example) {
   solver::WorldDef<D> def;
@@ -118,14 +60,14 @@ solver::WorldDef<D> world_of(const Case& example) {
   return def;
 }
 
-static ShapeDef<2> box_of(const Vec<2>& half) {
+ShapeDef<2> box_of(const Vec<2>& half) {
   ShapeDef<2> shape;
   shape.kind = ShapeKind::kPolygon;
   for (const auto& [x, y] : {std::pair{-1, -1}, {1, -1}, {1, 1}, {-1, 1}})
     shape.points.push_back({{static_cast<float>(x) * half[0], static_cast<float>(y) * half[1]}});
   return shape;
 }
-static ShapeDef<3> box_of(const Vec<3>& half) {
+ShapeDef<3> box_of(const Vec<3>& half) {
   ShapeDef<3> shape;
   shape.kind = ShapeKind::kBox;
   shape.half = half;
@@ -150,15 +92,14 @@ static ShapeDef<3> uneven(ShapeDef<3> shape, float size) {
   return shape;
 }
 
-/// Uneven land: a chain from right to left, or a height field.
-static ShapeDef<2> land(ShapeDef<2> shape) {
+ShapeDef<2> land(ShapeDef<2> shape) {
   shape.kind = ShapeKind::kChain;
   for (int i = 0; i < 12; ++i)
     shape.points.push_back(
         {{12.0f - 2.1f * static_cast<float>(i), 0.3f * static_cast<float>(i * i % 5)}});
   return shape;
 }
-static ShapeDef<3> land(ShapeDef<3> shape) {
+ShapeDef<3> land(ShapeDef<3> shape) {
   shape.kind = ShapeKind::kHeightField;
   shape.columns = 8;
   shape.cell = {2.7f, 2.9f};

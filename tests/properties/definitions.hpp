@@ -54,6 +54,14 @@ solver::Spin<D> spin_of(const Command& command, std::size_t first);
 template <int D>
 solver::Rotation<D> rotation_of(int value);
 float number_of(const Command& command, std::size_t index);
+/// A size from `value`: above 0, of 0.1 m to a few m.
+float size_of(int value);
+
+solver::ShapeDef<2> box_of(const solver::Vec<2>& half);
+solver::ShapeDef<3> box_of(const solver::Vec<3>& half);
+/// Uneven land: a chain from right to left, or a height field.
+solver::ShapeDef<2> land(solver::ShapeDef<2> shape);
+solver::ShapeDef<3> land(solver::ShapeDef<3> shape);
 
 template <int D>
 void register_shelf(solver::World<D>& world);

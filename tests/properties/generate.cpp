@@ -37,7 +37,9 @@ static std::span<const Op> any_ops() {
                                 Op::kCreateParticle, Op::kCreateParticle, Op::kCreateParticle,
                                 Op::kCreateLink,     Op::kCreateLink,     Op::kDestroyParticle,
                                 Op::kDestroyLink,    Op::kCreatePin,      Op::kCreatePin,
-                                Op::kDestroyPin,     Op::kRegisters};
+                                Op::kDestroyPin,     Op::kRegisters,      Op::kCreateLand,
+                                Op::kCreateSolid,    Op::kCreateSolid,    Op::kCreateCloth,
+                                Op::kCreateDrive,    Op::kCreateDrive,    Op::kSurface};
   return kOps;
 }
 
@@ -63,15 +65,39 @@ static std::span<const Op> ops_of_throws() {
   return kOps;
 }
 
+/// The same after a crowd: much time, so that it falls asleep, and little that wakes it.
+static std::span<const Op> ops_of_crowds() {
+  static constexpr Op kOps[] = {
+      Op::kStep,         Op::kRevisit,    Op::kStep,         Op::kStep,        Op::kStep,
+      Op::kStep,         Op::kStep,       Op::kRevisit,      Op::kRevisit,     Op::kRevisit,
+      Op::kRevisit,      Op::kRevisit,    Op::kCreateBody,   Op::kDestroyBody, Op::kSetPose,
+      Op::kSetVelocity,  Op::kImpulse,    Op::kForce,        Op::kMass,        Op::kFilter,
+      Op::kTuning,       Op::kSurface,    Op::kGravityScale, Op::kCreateJoint, Op::kCreateDrive,
+      Op::kDestroyJoint, Op::kCreateLand, Op::kCreateSolid,  Op::kCreateCloth, Op::kDamping};
+  return kOps;
+}
+
 static rc::Gen<Op> op(std::span<const Op> ops) {
   return rc::gen::map(choice(static_cast<std::uint32_t>(ops.size())),
                       [ops](std::uint32_t i) { return ops[i]; });
 }
 
-static rc::Gen<std::vector<Command>> commands(std::span<const Op> ops) {
-  return rc::gen::scale(
-      2.0, rc::gen::container<std::vector<Command>>(rc::gen::construct<Command>(
-               op(ops), choice(64), choice(64), rc::gen::container<std::array<int, 8>>(number()))));
+static rc::Gen<Command> command(rc::Gen<Op> op) {
+  return rc::gen::construct<Command>(std::move(op), choice(64), choice(64),
+                                     rc::gen::container<std::array<int, 8>>(number()));
+}
+
+static rc::Gen<std::vector<Command>> commands(std::span<const Op> ops, double scale = 2.0) {
+  return rc::gen::scale(scale, rc::gen::container<std::vector<Command>>(command(op(ops))));
+}
+
+static rc::Gen<std::vector<Command>> commands_on_a_crowd() {
+  return rc::gen::apply(
+      [](const Command& crowd, std::vector<Command> others) {
+        others.insert(others.begin(), crowd);
+        return others;
+      },
+      command(rc::gen::just(Op::kCreateCrowd)), commands(ops_of_crowds(), 0.5));
 }
 
 static rc::Gen<Setting> setting() {
@@ -91,9 +117,10 @@ rc::Gen<Case> cases(int dimension) {
   return rc::gen::construct<Case>(
       rc::gen::just(dimension), tuning(), choice(3),
       rc::gen::map(choice(12), [](std::uint32_t g) { return int(g); }), setting(), setting(),
-      rc::gen::weightedOneOf<std::vector<Command>>({{3, commands(any_ops())},
-                                                    {1, commands(ops_of_chains())},
-                                                    {1, commands(ops_of_throws())}}));
+      rc::gen::weightedOneOf<std::vector<Command>>({{17, commands(any_ops())},
+                                                    {6, commands(ops_of_chains())},
+                                                    {6, commands(ops_of_throws())},
+                                                    {1, commands_on_a_crowd()}}));
 }
 
 }  // namespace cycloid::properties

@@ -17,7 +17,9 @@ void Played::add(const Played& other) {
   joints += other.joints;
   asleep += other.asleep;
   particles += other.particles;
+  links += other.links;
   crowded_ticks += other.crowded_ticks;
+  resting_ticks += other.resting_ticks;
   paced_ticks += other.paced_ticks;
 }
 
@@ -103,8 +105,10 @@ class Pair {
     played_.contacts += state.contacts.size();
     played_.joints += state.joints.size() - state.free_joints.size();
     played_.particles += state.particles.size() - state.free_particles.size();
+    played_.links += state.links.size() - state.free_links.size();
     played_.asleep += statistics.asleep;
     played_.crowded_ticks += state.contacts.size() > 64 ? 1 : 0;
+    played_.resting_ticks += statistics.asleep > 64 ? 1 : 0;
     played_.paced_ticks += statistics.substeps < one_.world().tuning().substeps ? 1 : 0;
   }
 

@@ -16,7 +16,9 @@ struct Played {
   std::uint64_t joints = 0;
   std::uint64_t asleep = 0;
   std::uint64_t particles = 0;
+  std::uint64_t links = 0;
   std::uint64_t crowded_ticks = 0;  ///< With more contacts than one worker takes at once.
+  std::uint64_t resting_ticks = 0;  ///< With more bodies asleep than that.
   std::uint64_t paced_ticks = 0;    ///< In fewer substeps: islands solved at once had all.
 
   void add(const Played& other);

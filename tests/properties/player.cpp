@@ -5,6 +5,7 @@
 #include <utility>
 
 #include "solver/queries/query.hpp"
+#include "solver/trace.hpp"
 
 namespace cycloid::properties {
 
@@ -13,7 +14,7 @@ using solver::Error;
 using solver::Result;
 using solver::World;
 
-static Answer answer_of(const Error& error) {
+Answer answer_of(const Error& error) {
   return {error.code, error.field, error.index, 0, 0};
 }
 
@@ -21,12 +22,6 @@ std::string text_of(const Answer& answer) {
   return std::string(solver::code_name(answer.code)) + " \"" + answer.field + "\" " +
          std::to_string(answer.index) + ", id " + std::to_string(answer.id_index) + "." +
          std::to_string(answer.id_generation);
-}
-
-/// The one that `choice` names, or an id that was never given out.
-template <class Id>
-static Id one_of(const std::vector<Id>& ids, std::uint32_t choice) {
-  return ids.empty() ? Id{} : ids[choice % ids.size()];
 }
 
 static Setting setting_of(std::uint32_t choice) {
@@ -59,50 +54,17 @@ std::unique_ptr<World<D>> Player<D>::make_world() const {
 }
 
 template <int D>
-template <class Id>
-Answer Player<D>::keep(const Result<Id>& result, std::vector<Id>& ids) {
-  if (!result.ok()) return answer_of(result.error());
-  ids.push_back(result.value());
-  return {solver::Code::kOk, "", -1, result.value().index, result.value().generation};
-}
-
-/// What is gone is chosen no more, whoever took it away.
-template <int D>
-template <class Id>
-Answer Player<D>::drop(Error error, std::uint32_t choice, std::vector<Id>& ids) {
-  const bool gone = error.ok() || error.code == solver::Code::kUnknownId;
-  if (gone && !ids.empty())
-    ids.erase(ids.begin() + static_cast<std::ptrdiff_t>(choice % ids.size()));
-  return answer_of(error);
-}
-
-template <int D>
 Answer Player<D>::create(const Piece<D>& piece) {
-  return keep(world_->create_body(piece.body, piece.shapes), bodies_);
-}
-
-template <int D>
-std::vector<Answer> Player<D>::create_chain(const Command& command) {
-  std::vector<Answer> answers;
-  solver::JointDef<D> def;
-  def.kind = command.b % 8 == 6 ? solver::JointKind::kWeld : solver::JointKind::kRevolute;
-  solver::Vec<D> last = solver::Vec<D>::zero();
-  for (const Piece<D>& piece : chain_of<D>(command)) {
-    answers.push_back(create(piece));
-    if (answers.back().code != solver::Code::kOk) return answers;
-    def.body_b = bodies_.back();
-    def.anchor_a = piece.body.position - last;
-    if (answers.size() > 1) answers.push_back(keep(world_->create_joint(def), joints_));
-    def.body_a = def.body_b;
-    last = piece.body.position;
-  }
-  return answers;
+  return keep(world_->create_body(piece.body, piece.shapes), alive_.bodies);
 }
 
 template <int D>
 Answer Player<D>::step() {
   if (stranger_ != nullptr) (void)stranger_->step();
-  const Answer answer = answer_of(world_->step());
+  if (past_ != nullptr) past_->since.push_back({});
+  solver::StepTrace trace;
+  const Answer answer = answer_of(traced_ > 0 ? world_->step_traced(trace) : world_->step());
+  traced_ -= traced_ > 0 ? 1 : 0;
   destroyed_ = restored_ = false;
   return answer;
 }
@@ -155,19 +117,19 @@ Answer Player<D>::obey_body(const Command& command, BodyId id) {
 template <int D>
 Answer Player<D>::obey_joint(const Command& command) {
   World<D>& world = *world_;
-  const solver::JointId id = one_of(joints_, command.a);
+  const solver::JointId id = one_of(alive_.joints, command.a);
   const float first = number_of(command, 0);
   const float second = number_of(command, 1);
   const bool enabled = command.b % 4 != 0;
   switch (command.op) {
     case Op::kCreateJoint: {
       solver::JointDef<D> def = joint_of<D>(command);
-      def.body_a = one_of(bodies_, command.a);
-      def.body_b = one_of(bodies_, command.b);
-      return keep(world.create_joint(def), joints_);
+      def.body_a = one_of(alive_.bodies, command.a);
+      def.body_b = one_of(alive_.bodies, command.b);
+      return keep(world.create_joint(def), alive_.joints);
     }
     case Op::kDestroyJoint:
-      return drop(world.destroy_joint(id), command.a, joints_);
+      return drop(world.destroy_joint(id), command.a, alive_.joints);
     case Op::kMotor:
       return answer_of(world.set_motor(id, enabled, first, 50.0f));
     case Op::kTarget:
@@ -193,25 +155,26 @@ Answer Player<D>::obey_particle(const Command& command) {
       def.velocity = vector_of<D>(command, 3);
       if (command.b % 4 == 3) def.mass = 0.0f;
       def.radius = 0.05f;
-      return keep(world.create_particle(def), particles_);
+      return keep(world.create_particle(def), alive_.particles);
     }
     case Op::kDestroyParticle:
-      return drop(world.destroy_particle(one_of(particles_, command.a)), command.a, particles_);
+      return drop(world.destroy_particle(one_of(alive_.particles, command.a)), command.a,
+                  alive_.particles);
     case Op::kCreateLink: {
       const float length = number_of(command, 0);
-      return keep(
-          world.create_link({one_of(particles_, command.a), one_of(particles_, command.b),
-                             length < 0.0f ? -length : length, command.b % 2 == 0 ? 0.0f : 0.001f}),
-          links_);
+      return keep(world.create_link(
+                      {one_of(alive_.particles, command.a), one_of(alive_.particles, command.b),
+                       length < 0.0f ? -length : length, command.b % 2 == 0 ? 0.0f : 0.001f}),
+                  alive_.links);
     }
     case Op::kDestroyLink:
-      return drop(world.destroy_link(one_of(links_, command.a)), command.a, links_);
+      return drop(world.destroy_link(one_of(alive_.links, command.a)), command.a, alive_.links);
     case Op::kCreatePin:
-      return keep(world.create_pin({one_of(particles_, command.a), one_of(bodies_, command.b),
-                                    vector_of<D>(command, 0)}),
-                  pins_);
+      return keep(world.create_pin({one_of(alive_.particles, command.a),
+                                    one_of(alive_.bodies, command.b), vector_of<D>(command, 0)}),
+                  alive_.pins);
     default:
-      return drop(world.destroy_pin(one_of(pins_, command.a)), command.a, pins_);
+      return drop(world.destroy_pin(one_of(alive_.pins, command.a)), command.a, alive_.pins);
   }
 }
 
@@ -221,6 +184,8 @@ Answer Player<D>::obey_world(const Command& command) {
   switch (command.op) {
     case Op::kGravity:
       return answer_of(world.set_gravity(vector_of<D>(command, 0)));
+    case Op::kSurface:
+      return answer_of(world.set_material(command.a % 3, surface_of(command)));
     case Op::kMaterial:
       return answer_of(world.set_material(
           command.a % 4, {number_of(command, 0), 0.3f, number_of(command, 1), 0.01f}));
@@ -234,18 +199,18 @@ Answer Player<D>::obey_world(const Command& command) {
 
 template <int D>
 std::vector<Answer> Player<D>::obey(const Command& command) {
-  std::vector<Answer> answers;
+  if (past_ != nullptr && command.op != Op::kRevisit) past_->since.push_back(command);
   switch (command.op) {
     case Op::kCreateBody:
       return {create(piece_of<D>(command))};
     case Op::kCreateGrid:
-      for (const Piece<D>& piece : grid_of<D>(command)) answers.push_back(create(piece));
-      return answers;
+      return create_all(grid_of<D>(command));
     case Op::kCreateChain:
       return create_chain(command);
     case Op::kDestroyBody:
       destroyed_ = true;
-      return {drop(world_->destroy_body(one_of(bodies_, command.a)), command.a, bodies_)};
+      return {
+          drop(world_->destroy_body(one_of(alive_.bodies, command.a)), command.a, alive_.bodies)};
     case Op::kRevisit:
       if (revisits_) revisit(command);
       return {};
@@ -253,18 +218,25 @@ std::vector<Answer> Player<D>::obey(const Command& command) {
     case Op::kMaterial:
     case Op::kTuning:
     case Op::kRegisters:
+    case Op::kSurface:
       return {obey_world(command)};
+    case Op::kCreateCrowd:
+    case Op::kCreateLand:
+    case Op::kCreateSolid:
+    case Op::kCreateCloth:
+    case Op::kCreateDrive:
+      return obey_anew(command);
     default:
       if (command.op >= Op::kCreateParticle) return {obey_particle(command)};
       if (command.op >= Op::kCreateJoint) return {obey_joint(command)};
-      return {obey_body(command, one_of(bodies_, command.a))};
+      return {obey_body(command, one_of(alive_.bodies, command.a))};
   }
 }
 
 template <int D>
 void Player<D>::revisit(const Command& command) {
   const auto how = static_cast<Revisit>(command.b % static_cast<std::uint32_t>(Revisit::kCount));
-  if (how <= Revisit::kAfterAnother) restored_ = true;
+  if (how <= Revisit::kAfterAnother || how == Revisit::kAfterEdits) restored_ = true;
   solver::WorldState<D> saved;
   std::vector<std::byte> bytes;
   const auto decode = [&] {
@@ -289,7 +261,7 @@ void Player<D>::revisit(const Command& command) {
     case Revisit::kAfterAnother:
       world_->save(saved);
       for (std::uint32_t i = 0; i < 1 + command.a % 3; ++i) {
-        (void)world_->destroy_body(one_of(bodies_, command.a + i));
+        (void)world_->destroy_body(one_of(alive_.bodies, command.a + i));
         (void)world_->set_gravity(vector_of<D>(command, 0));
         (void)world_->step();
       }
@@ -311,6 +283,16 @@ void Player<D>::revisit(const Command& command) {
       for (const Piece<D>& piece : grid_of<D>(command))
         (void)stranger_->create_body(piece.body, piece.shapes);
       return;
+    case Revisit::kTrim:
+      return rest_and_trim(command);
+    case Revisit::kTraced:
+      traced_ = 1 + command.a % 5;
+      return;
+    case Revisit::kAfterEdits:
+      edit_and_restore(command);
+      return damage();
+    case Revisit::kReplay:
+      return replay();
     default:
       return look();
   }
@@ -340,8 +322,8 @@ void Player<D>::look() const {
   std::vector<std::byte> bytes;
   world.encode(bytes);
   (void)world.digest();
-  for (const BodyId id : bodies_) (void)world.body(id);
-  for (const solver::JointId id : joints_) {
+  for (const BodyId id : alive_.bodies) (void)world.body(id);
+  for (const solver::JointId id : alive_.joints) {
     (void)world.joint_angle(id);
     (void)world.joint_separation(id);
   }

@@ -77,8 +77,9 @@ TEST_P(Properties, AnyCallsInAnySettingWithAnyRestoresAreTheSame) {
   const Played& played = found.played;
   std::printf(
       "%dD: %llu cases from seed %llu in %.1f s: %llu ticks, %llu calls (%llu refused), "
-      "%llu cases faulted; per tick %.1f contacts, %.2f joints, %.1f asleep, %.2f particles; "
-      "%llu ticks with more than 64 contacts, %llu in fewer substeps\n",
+      "%llu cases faulted; per tick %.1f contacts, %.2f joints, %.1f asleep, %.2f particles, "
+      "%.2f links; %llu ticks with more than 64 contacts, %llu with more than 64 asleep, "
+      "%llu in fewer substeps\n",
       GetParam(), static_cast<unsigned long long>(played.cases),
       static_cast<unsigned long long>(seed), seconds.count(),
       static_cast<unsigned long long>(played.ticks), static_cast<unsigned long long>(played.calls),
@@ -86,7 +87,9 @@ TEST_P(Properties, AnyCallsInAnySettingWithAnyRestoresAreTheSame) {
       static_cast<unsigned long long>(played.faulted),
       double(played.contacts) / double(played.ticks), double(played.joints) / double(played.ticks),
       double(played.asleep) / double(played.ticks), double(played.particles) / double(played.ticks),
+      double(played.links) / double(played.ticks),
       static_cast<unsigned long long>(played.crowded_ticks),
+      static_cast<unsigned long long>(played.resting_ticks),
       static_cast<unsigned long long>(played.paced_ticks));
   ASSERT_FALSE(found.failed) << "CYCLOID_SEED=" << seed << " CYCLOID_CASES=" << 2 * count << '\n'
                              << show(found);
@@ -94,8 +97,10 @@ TEST_P(Properties, AnyCallsInAnySettingWithAnyRestoresAreTheSame) {
   EXPECT_GT(played.contacts, played.ticks);
   EXPECT_GT(played.joints, played.ticks / 20);
   EXPECT_GT(played.particles, played.ticks / 20);
+  EXPECT_GT(played.links, played.ticks / 20);
   EXPECT_GT(played.asleep, played.ticks / 20);
   EXPECT_GT(played.crowded_ticks, played.ticks / 100);
+  EXPECT_GT(played.resting_ticks, 0u);
   EXPECT_GT(played.paced_ticks, played.ticks / 1000);
   EXPECT_LT(played.refused, played.calls / 2);
   EXPECT_LT(played.faulted, played.cases / 4);

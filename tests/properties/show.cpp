@@ -1,6 +1,6 @@
 #include <ostream>
 
-#include "tests/properties/definitions.hpp"
+#include "tests/properties/scenery.hpp"
 
 namespace cycloid::properties {
 
@@ -11,7 +11,8 @@ static constexpr const char* kOpNames[] = {
     "Mass",        "Material",       "Filter",         "CreateJoint",     "DestroyJoint",
     "Motor",       "Target",         "Steering",       "Anchor",          "Limits",
     "Spring",      "Tuning",         "CreateParticle", "DestroyParticle", "CreateLink",
-    "DestroyLink", "CreatePin",      "DestroyPin",     "Registers"};
+    "DestroyLink", "CreatePin",      "DestroyPin",     "Registers",       "CreateCrowd",
+    "CreateLand",  "CreateSolid",    "CreateCloth",    "CreateDrive",     "Surface"};
 static_assert(std::size(kOpNames) == static_cast<std::size_t>(Op::kCount));
 
 static constexpr const char* kRevisitNames[] = {"saved and restored",
@@ -21,16 +22,45 @@ static constexpr const char* kRevisitNames[] = {"saved and restored",
                                                 "moved",
                                                 "other workers, lanes and lots",
                                                 "a stranger beside it",
-                                                "looked at"};
+                                                "looked at",
+                                                "trimmed, workers at rest",
+                                                "traced",
+                                                "restored after other commands",
+                                                "replayed"};
 static_assert(std::size(kRevisitNames) == static_cast<std::size_t>(Revisit::kCount));
 
 template <int D>
-static void remark_on_body(const Command& command, std::ostream& out) {
+static void remark_on_body(const Piece<D>& piece, std::ostream& out) {
   constexpr const char* kKinds[] = {"free", "static", "kinematic", "dynamic", "particle"};
-  const Piece<D> piece = piece_of<D>(command);
   out << kKinds[static_cast<std::size_t>(piece.body.kind)] << " of " << piece.shapes.size()
       << " shapes at";
   for (const float value : piece.body.position.v) out << ' ' << value;
+}
+
+/// Of what is made in one dimension as in the other, or not quite.
+template <int D>
+static void remark_in(const Command& command, std::ostream& out) {
+  switch (command.op) {
+    case Op::kCreateBody:
+      return remark_on_body(piece_of<D>(command), out);
+    case Op::kCreateLand:
+      return remark_on_body(land_of<D>(command), out);
+    case Op::kCreateSolid:
+      return remark_on_body(solid_of<D>(command), out);
+    case Op::kCreateGrid:
+      out << grid_of<D>(command).size() << " bodies";
+      return;
+    case Op::kCreateCrowd:
+      out << crowd_of<D>(command).size() << " bodies";
+      return;
+    case Op::kCreateChain:
+      out << chain_of<D>(command).size() << " bodies";
+      return;
+    default: {
+      const Cloth<D> cloth = cloth_of<D>(command);
+      out << cloth.particles.size() << " particles with " << cloth.links.size() << " links";
+    }
+  }
 }
 
 static void remark(const Case& example, const Command& command, std::ostream& out) {
@@ -39,15 +69,16 @@ static void remark(const Case& example, const Command& command, std::ostream& ou
       out << 1 + command.a % 12 << " ticks";
       return;
     case Op::kCreateBody:
-      if (example.dimension == 2) remark_on_body<2>(command, out);
-      if (example.dimension == 3) remark_on_body<3>(command, out);
-      return;
+    case Op::kCreateLand:
+    case Op::kCreateSolid:
     case Op::kCreateGrid:
-      out << grid_of<2>(command).size() << " bodies";
-      return;
+    case Op::kCreateCrowd:
     case Op::kCreateChain:
-      out << chain_of<2>(command).size() << " bodies";
+    case Op::kCreateCloth:
+      if (example.dimension == 2) remark_in<2>(command, out);
+      if (example.dimension == 3) remark_in<3>(command, out);
       return;
+    case Op::kCreateDrive:
     case Op::kCreateJoint:
       out << name_of(joint_of<2>(command).kind) << " of bodies " << command.a << " and "
           << command.b << " modulo those alive";
