@@ -39,7 +39,8 @@ static std::span<const Op> any_ops() {
                                 Op::kDestroyLink,    Op::kCreatePin,      Op::kCreatePin,
                                 Op::kDestroyPin,     Op::kRegisters,      Op::kCreateLand,
                                 Op::kCreateSolid,    Op::kCreateSolid,    Op::kCreateCloth,
-                                Op::kCreateDrive,    Op::kCreateDrive,    Op::kSurface};
+                                Op::kCreateDrive,    Op::kCreateDrive,    Op::kSurface,
+                                Op::kStep,           Op::kStep,           Op::kStep};
   return kOps;
 }
 
@@ -68,12 +69,13 @@ static std::span<const Op> ops_of_throws() {
 /// The same after a crowd: much time, so that it falls asleep, and little that wakes it.
 static std::span<const Op> ops_of_crowds() {
   static constexpr Op kOps[] = {
-      Op::kStep,         Op::kRevisit,    Op::kStep,         Op::kStep,        Op::kStep,
-      Op::kStep,         Op::kStep,       Op::kRevisit,      Op::kRevisit,     Op::kRevisit,
-      Op::kRevisit,      Op::kRevisit,    Op::kCreateBody,   Op::kDestroyBody, Op::kSetPose,
-      Op::kSetVelocity,  Op::kImpulse,    Op::kForce,        Op::kMass,        Op::kFilter,
-      Op::kTuning,       Op::kSurface,    Op::kGravityScale, Op::kCreateJoint, Op::kCreateDrive,
-      Op::kDestroyJoint, Op::kCreateLand, Op::kCreateSolid,  Op::kCreateCloth, Op::kDamping};
+      Op::kStep,       Op::kRevisit,      Op::kStep,        Op::kStep,        Op::kStep,
+      Op::kStep,       Op::kStep,         Op::kStep,        Op::kStep,        Op::kStep,
+      Op::kStep,       Op::kRevisit,      Op::kRevisit,     Op::kRevisit,     Op::kRevisit,
+      Op::kRevisit,    Op::kCreateBody,   Op::kDestroyBody, Op::kSetPose,     Op::kSetVelocity,
+      Op::kImpulse,    Op::kForce,        Op::kMass,        Op::kFilter,      Op::kTuning,
+      Op::kSurface,    Op::kGravityScale, Op::kCreateJoint, Op::kCreateDrive, Op::kDestroyJoint,
+      Op::kCreateLand, Op::kCreateSolid,  Op::kCreateCloth, Op::kDamping,     Op::kCreateCrowd};
   return kOps;
 }
 
@@ -108,19 +110,34 @@ static rc::Gen<Setting> setting() {
 /// Of `tuning_of`, half of them the default method in any order, sleep and warm start, whose
 /// islands at once any other choice of blocks or of joints' solver would switch off.
 static rc::Gen<std::uint32_t> tuning() {
-  return rc::gen::map(choice(2 * 1152), [](std::uint32_t n) {
-    return n < 1152 ? n : 8 + 9 * (n % 4) + 9 * 4 * 3 * 2 * (n / 4 % 12);
+  return rc::gen::map(choice(2 * 5184), [](std::uint32_t n) {
+    return n < 5184 ? n : 8 + 9 * (n % 4) + 9 * 4 * 3 * 2 * (n / 4 % 12);
   });
 }
 
+/// Of those that let bodies sleep, most of them soon; every other with the default method.
+static rc::Gen<std::uint32_t> tuning_of_crowds() {
+  return rc::gen::map(choice(72), [](std::uint32_t n) {
+    const std::uint32_t method = n % 2 == 0 ? 8 : n / 2 % 9;
+    return method + 9 * 4 * 3 * 2 * (n / 18 == 3 ? 1u : 0u);
+  });
+}
+
+static rc::Gen<int> gravity(std::uint32_t least) {
+  return rc::gen::map(choice(12 - least), [least](std::uint32_t g) { return int(g + least); });
+}
+
 rc::Gen<Case> cases(int dimension) {
-  return rc::gen::construct<Case>(
-      rc::gen::just(dimension), tuning(), choice(3),
-      rc::gen::map(choice(12), [](std::uint32_t g) { return int(g); }), setting(), setting(),
-      rc::gen::weightedOneOf<std::vector<Command>>({{17, commands(any_ops())},
-                                                    {6, commands(ops_of_chains())},
-                                                    {6, commands(ops_of_throws())},
-                                                    {1, commands_on_a_crowd()}}));
+  const auto on_any_ground = [dimension](rc::Gen<std::vector<Command>> commands) {
+    return rc::gen::construct<Case>(rc::gen::just(dimension), tuning(), choice(3), gravity(0),
+                                    setting(), setting(), std::move(commands));
+  };
+  return rc::gen::weightedOneOf<Case>(
+      {{17, on_any_ground(commands(any_ops()))},
+       {6, on_any_ground(commands(ops_of_chains()))},
+       {6, on_any_ground(commands(ops_of_throws()))},
+       {1, rc::gen::construct<Case>(rc::gen::just(dimension), tuning_of_crowds(), choice(3),
+                                    gravity(8), setting(), setting(), commands_on_a_crowd())}});
 }
 
 }  // namespace cycloid::properties
