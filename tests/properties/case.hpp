@@ -65,6 +65,7 @@ enum class Revisit : std::uint8_t {
   kTrim,          ///< Memory is given back; workers rest, or no longer do.
   kTraced,        ///< From now on, or no longer, steps are traced.
   kAfterEdits,    ///< Saved; other commands; restored.
+  kTwin,          ///< Saved, and restored into a world that has been it before, if there is one.
   kReplay,        ///< Back to where this was asked before, and all again since then.
   kCount,
 };

@@ -89,17 +89,19 @@ static rc::Gen<Command> command(rc::Gen<Op> op) {
                                      rc::gen::container<std::array<int, 8>>(number()));
 }
 
-static rc::Gen<std::vector<Command>> commands(std::span<const Op> ops, double scale = 2.0) {
-  return rc::gen::scale(scale, rc::gen::container<std::vector<Command>>(command(op(ops))));
+static rc::Gen<std::vector<Command>> commands(std::span<const Op> ops) {
+  return rc::gen::scale(2.0, rc::gen::container<std::vector<Command>>(command(op(ops))));
 }
 
+/// As many whatever the size of the case, which is first small: fewer would not let it fall asleep.
 static rc::Gen<std::vector<Command>> commands_on_a_crowd() {
+  constexpr int kMost = 25;
   return rc::gen::apply(
       [](const Command& crowd, std::vector<Command> others) {
         others.insert(others.begin(), crowd);
         return others;
       },
-      command(rc::gen::just(Op::kCreateCrowd)), commands(ops_of_crowds(), 0.5));
+      command(rc::gen::just(Op::kCreateCrowd)), rc::gen::resize(kMost, commands(ops_of_crowds())));
 }
 
 static rc::Gen<Setting> setting() {

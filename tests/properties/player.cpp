@@ -236,7 +236,8 @@ std::vector<Answer> Player<D>::obey(const Command& command) {
 template <int D>
 void Player<D>::revisit(const Command& command) {
   const auto how = static_cast<Revisit>(command.b % static_cast<std::uint32_t>(Revisit::kCount));
-  if (how <= Revisit::kAfterAnother || how == Revisit::kAfterEdits) restored_ = true;
+  if (how <= Revisit::kAfterAnother || how == Revisit::kAfterEdits || how == Revisit::kTwin)
+    restored_ = true;
   solver::WorldState<D> saved;
   std::vector<std::byte> bytes;
   const auto decode = [&] {
@@ -290,6 +291,9 @@ void Player<D>::revisit(const Command& command) {
       return;
     case Revisit::kAfterEdits:
       edit_and_restore(command);
+      return damage();
+    case Revisit::kTwin:
+      change_places();
       return damage();
     case Revisit::kReplay:
       return replay();

@@ -103,6 +103,7 @@ class Player {
   void revisit(const Command& command);
   void rest_and_trim(const Command& command);
   void edit_and_restore(const Command& command);
+  void change_places();
   void replay();
   void damage();
   void look() const;
@@ -114,6 +115,7 @@ class Player {
   Flaw flaw_;
   std::unique_ptr<solver::World<D>> world_;
   std::unique_ptr<solver::World<D>> stranger_;
+  std::unique_ptr<solver::World<D>> twin_;
   Alive alive_;
   std::unique_ptr<Past<D>> past_;
   std::uint32_t traced_ = 0;  ///< Ticks that will be.

@@ -99,6 +99,16 @@ void Player<D>::edit_and_restore(const Command& command) {
   past_ = std::move(past);
 }
 
+/// Each of the two has kept things of its own from when it last was the one that is played.
+template <int D>
+void Player<D>::change_places() {
+  if (twin_ == nullptr) twin_ = make_world();
+  solver::WorldState<D> saved;
+  world_->save(saved);
+  twin_->restore(saved);
+  std::swap(world_, twin_);
+}
+
 /// The calls since then come to the same again, whatever the world has seen of what comes.
 template <int D>
 void Player<D>::replay() {
@@ -130,6 +140,8 @@ template void Player<2>::rest_and_trim(const Command&);
 template void Player<3>::rest_and_trim(const Command&);
 template void Player<2>::edit_and_restore(const Command&);
 template void Player<3>::edit_and_restore(const Command&);
+template void Player<2>::change_places();
+template void Player<3>::change_places();
 template void Player<2>::replay();
 template void Player<3>::replay();
 

@@ -26,6 +26,7 @@ static constexpr const char* kRevisitNames[] = {"saved and restored",
                                                 "trimmed, workers at rest",
                                                 "traced",
                                                 "restored after other commands",
+                                                "restored into its twin",
                                                 "replayed"};
 static_assert(std::size(kRevisitNames) == static_cast<std::size_t>(Revisit::kCount));
 
