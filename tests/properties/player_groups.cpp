@@ -66,6 +66,7 @@ std::vector<Answer> Player<D>::obey_anew(const Command& command) {
       solver::JointDef<D> def = drive_of<D>(command);
       def.body_a = one_of(alive_.bodies, command.a);
       def.body_b = one_of(alive_.bodies, command.b);
+      if (def.body_a == def.body_b) def.body_b = one_of(alive_.bodies, command.b + 1);
       return {keep(world_->create_joint(def), alive_.joints)};
     }
   }

@@ -234,9 +234,30 @@ Cloth<D> cloth_of(const Command& command) {
   return cloth;
 }
 
+/// What the other dimension has not, for what this one has not.
+template <int D>
+static JointKind kind_in(JointKind kind) {
+  if (D == 3 && kind == JointKind::kGear) return JointKind::kHinge;
+  if (D == 3 && kind == JointKind::kCurve) return JointKind::kConeTwist;
+  if (D == 2 && kind == JointKind::kHinge) return JointKind::kGear;
+  if (D == 2 && kind == JointKind::kConeTwist) return JointKind::kCurve;
+  return kind;
+}
+
 template <int D>
 solver::JointDef<D> drive_of(const Command& command) {
   solver::JointDef<D> def = joint_of<D>(command);
+  def.kind = kind_in<D>(def.kind);
+  const bool turns = def.kind == (D == 2 ? JointKind::kRevolute : JointKind::kHinge);
+  const bool slides = def.kind == JointKind::kDistance || def.kind == JointKind::kPrismatic ||
+                      def.kind == JointKind::kUser || def.kind == JointKind::kWheel;
+  const bool bends = def.kind == JointKind::kPulley || def.kind == JointKind::kCurve ||
+                     def.kind == JointKind::kConeTwist;
+  def.limit_enabled = (turns || slides || bends) && command.v[5] % 2 == 0;
+  if (!turns && !slides) def.motor = solver::MotorKind::kOff;
+  if (def.kind == JointKind::kWheel && def.motor == solver::MotorKind::kPosition)
+    def.motor = solver::MotorKind::kSpeed;
+  if (D == 3 && def.kind == JointKind::kWheel) def.axle[D - 1] = 1.0f;
   const auto bits = static_cast<std::uint32_t>(command.v[6] + 128);
   def.anchor_a = 0.2f * vector_of<D>(command, 1);
   def.anchor_b = 0.2f * vector_of<D>(command, 3);

@@ -79,10 +79,14 @@ static void remark(const Case& example, const Command& command, std::ostream& ou
       if (example.dimension == 2) remark_in<2>(command, out);
       if (example.dimension == 3) remark_in<3>(command, out);
       return;
-    case Op::kCreateDrive:
     case Op::kCreateJoint:
       out << name_of(joint_of<2>(command).kind) << " of bodies " << command.a << " and "
           << command.b << " modulo those alive";
+      return;
+    case Op::kCreateDrive:
+      out << name_of(
+                 (example.dimension == 2 ? drive_of<2>(command).kind : drive_of<3>(command).kind))
+          << " of bodies " << command.a << " and " << command.b << " modulo those alive";
       return;
     case Op::kRevisit:
       out << kRevisitNames[command.b % std::size(kRevisitNames)];
