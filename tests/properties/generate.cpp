@@ -95,7 +95,7 @@ static rc::Gen<std::vector<Command>> commands(std::span<const Op> ops) {
 
 /// As many whatever the size of the case, which is first small: fewer would not let it fall asleep.
 static rc::Gen<std::vector<Command>> commands_on_a_crowd() {
-  constexpr int kMost = 25;
+  constexpr int kMost = 12;
   return rc::gen::apply(
       [](const Command& crowd, std::vector<Command> others) {
         others.insert(others.begin(), crowd);
@@ -129,7 +129,7 @@ static rc::Gen<int> gravity(std::uint32_t least) {
   return rc::gen::map(choice(12 - least), [least](std::uint32_t g) { return int(g + least); });
 }
 
-rc::Gen<Case> cases(int dimension) {
+rc::Gen<Case> cases(int dimension, bool crowds) {
   const auto on_any_ground = [dimension](rc::Gen<std::vector<Command>> commands) {
     return rc::gen::construct<Case>(rc::gen::just(dimension), tuning(), choice(3), gravity(0),
                                     setting(), setting(), std::move(commands));
@@ -138,8 +138,9 @@ rc::Gen<Case> cases(int dimension) {
       {{17, on_any_ground(commands(any_ops()))},
        {6, on_any_ground(commands(ops_of_chains()))},
        {6, on_any_ground(commands(ops_of_throws()))},
-       {1, rc::gen::construct<Case>(rc::gen::just(dimension), tuning_of_crowds(), choice(3),
-                                    gravity(8), setting(), setting(), commands_on_a_crowd())}});
+       {crowds ? 1u : 0u,
+        rc::gen::construct<Case>(rc::gen::just(dimension), tuning_of_crowds(), choice(3),
+                                 gravity(8), setting(), setting(), commands_on_a_crowd())}});
 }
 
 }  // namespace cycloid::properties

@@ -35,7 +35,7 @@ struct Found {
 Found search(int dimension, Flaw flaw, std::uint64_t count, std::uint64_t seed) {
   Found found;
   const auto property = [&] {
-    const Case example = *cases(dimension);
+    const Case example = *cases(dimension, flaw == Flaw::kNone);
     const Played played = play(example, flaw);
     found.played.add(played);
     if (played.failure.empty()) return;
