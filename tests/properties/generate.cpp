@@ -39,8 +39,7 @@ static std::span<const Op> any_ops() {
                                 Op::kDestroyLink,    Op::kCreatePin,      Op::kCreatePin,
                                 Op::kDestroyPin,     Op::kRegisters,      Op::kCreateLand,
                                 Op::kCreateSolid,    Op::kCreateSolid,    Op::kCreateCloth,
-                                Op::kCreateDrive,    Op::kCreateDrive,    Op::kSurface,
-                                Op::kStep,           Op::kStep,           Op::kStep};
+                                Op::kCreateDrive,    Op::kCreateDrive,    Op::kSurface};
   return kOps;
 }
 

@@ -287,7 +287,7 @@ void Player<D>::revisit(const Command& command) {
     case Revisit::kTrim:
       return rest_and_trim(command);
     case Revisit::kTraced:
-      traced_ = 1 + command.a % 5;
+      traced_ = 1 + command.a % 2;
       return;
     case Revisit::kAfterEdits:
       edit_and_restore(command);
