@@ -69,7 +69,7 @@ std::string show(const Found& found) {
 class Properties : public testing::TestWithParam<int> {};
 
 TEST_P(Properties, AnyCallsInAnySettingWithAnyRestoresAreTheSame) {
-  const std::uint64_t count = from_environment("CYCLOID_CASES", 200) / 2;
+  const std::uint64_t count = from_environment("CYCLOID_CASES", 270) / 2;
   const std::uint64_t seed = from_environment("CYCLOID_SEED", 1);
   const auto begin = std::chrono::steady_clock::now();
   const Found found = search(GetParam(), Flaw::kNone, count, seed);
