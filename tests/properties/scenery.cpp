@@ -1,6 +1,6 @@
 #include "tests/properties/scenery.hpp"
 
-#include <cmath>
+#include "solver/trig.hpp"
 
 namespace cycloid::properties {
 
@@ -13,6 +13,13 @@ using solver::Vec;
 /// -1 to 1, other ones from one `index` to the next.
 static float scattered(std::uint32_t index) {
   return 0.125f * (static_cast<float>((index * 37 + 11) % 17) - 8.0f);
+}
+
+/// Of unit length. By no libm, so that a seed names the same cases on every platform.
+static Vec<2> direction_of(float angle) {
+  Vec<2> direction;
+  solver::sin_cos(angle, direction[1], direction[0]);
+  return direction;
 }
 
 /// Where the bodies of a crowd stand.
@@ -87,9 +94,8 @@ static ShapeDef<2> ring(ShapeDef<2> shape, bool inside) {
   shape.kind = ShapeKind::kChain;
   shape.loop = true;
   for (int i = 0; i < 9; ++i) {
-    const float angle = 0.698f * static_cast<float>(inside ? -i : i);
     const float radius = 5.0f + 0.3f * static_cast<float>(i * i % 4);
-    shape.points.push_back({{radius * std::cos(angle), radius * std::sin(angle)}});
+    shape.points.push_back(radius * direction_of(0.698f * static_cast<float>(inside ? -i : i)));
   }
   return shape;
 }
@@ -148,8 +154,8 @@ Piece<D> land_of(const Command& command) {
 static ShapeDef<2> cornered(ShapeDef<2> shape, float size, std::uint32_t) {
   shape.kind = ShapeKind::kPolygon;
   for (int i = 0; i < 8; ++i) {
-    const float angle = 0.785f * static_cast<float>(i);
-    shape.points.push_back({{size * std::cos(angle), 0.8f * size * std::sin(angle)}});
+    const Vec<2> direction = direction_of(0.785f * static_cast<float>(i));
+    shape.points.push_back({{size * direction[0], 0.8f * size * direction[1]}});
   }
   shape.radius = 0.02f;
   return shape;
@@ -160,11 +166,10 @@ static ShapeDef<3> cornered(ShapeDef<3> shape, float size, std::uint32_t choice)
   const std::uint32_t count = 4 + choice % 57;
   for (std::uint32_t i = 0; i < count; ++i) {
     const float share = (static_cast<float>(i) + 0.5f) / static_cast<float>(count);
-    const float angle = 2.4f * static_cast<float>(i);
+    const Vec<2> direction = direction_of(2.4f * static_cast<float>(i));
     const float height = 1.0f - 2.0f * share;
-    const float radius = size * std::sqrt(1.0f - height * height);
-    shape.points.push_back(
-        {{radius * std::cos(angle), 1.2f * size * height, radius * std::sin(angle)}});
+    const float radius = size * solver::sqrt(1.0f - height * height);
+    shape.points.push_back({{radius * direction[0], 1.2f * size * height, radius * direction[1]}});
   }
   return shape;
 }
